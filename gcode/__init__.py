@@ -1,0 +1,1 @@
+"""G-code: neutral programs, printer profiles, emitters, parsers, checks and estimates."""

@@ -1,0 +1,1 @@
+"""The `skinfab` command: one file a sub-command, heavy imports inside the functions."""

@@ -1,0 +1,1 @@
+"""Exact drawings of the flat skin: SVG, DXF, OBJ with texture coordinates."""

@@ -1,0 +1,1 @@
+"""Flat pieces: distortion, boundary first flattening, isometric refinement, overlap."""

@@ -1,0 +1,117 @@
+"""What the skin is made of: ink, bead, silicone layers, mould and recipe, read from a TOML profile."""
+
+from __future__ import annotations
+
+import tomllib
+from dataclasses import dataclass, fields
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+from skinfab.errors import InputError
+
+
+@dataclass(frozen=True)
+class Ink:
+    """The conductive ink and the bead it is laid in."""
+
+    name: str
+    resistivity_ohm_cm: float
+    bead_area_mm2: float  # cross-section A of the printed bead
+    bead_width: float  # mm, as seen from above
+    contact_resistance_kohm: float  # of one terminal
+    log_sigma: float  # sd of ln(R): the scatter from print to print
+
+
+@dataclass(frozen=True)
+class Layer:
+    """One pour: its depth and what is weighed for it (parts by mass; additives in wt % of the base)."""
+
+    name: str
+    depth: float  # mm
+    density_g_ml: float
+    base: dict[str, float]
+    additives_wt_percent: dict[str, float]
+
+
+@dataclass(frozen=True)
+class Mould:
+    """The printed mould's own dimensions, mm."""
+
+    floor: float
+    wall: float
+    lip: float  # width of the adhesive lip along a seam
+    mark: float  # length of a registration mark's arm
+    wire_exit: float  # width of the slot a wire leaves by
+
+
+@dataclass(frozen=True)
+class Material:
+    """A whole profile. `margin` is from bead edge to skin edge, `gap` from bead edge to bead edge (mm)."""
+
+    name: str
+    margin: float
+    gap: float
+    pad: float
+    neck: float
+    cure_h: float
+    waste_percent: float
+    bond: str
+    ink: Ink
+    layers: tuple[Layer, ...]
+    mould: Mould
+
+    @property
+    def depth(self) -> float:
+        """Thickness of the whole skin, mm."""
+        return sum(layer.depth for layer in self.layers)
+
+
+def load_material(name: str | Path = "carbon-grease-ecoflex") -> Material:
+    """Read a bundled profile by name, or any TOML file by path.
+
+    Raises
+    ------
+    InputError
+        No such profile, not TOML, or a field missing, misspelt or of the wrong type.
+
+    Examples
+    --------
+    >>> m = load_material()
+    >>> m.ink.resistivity_ohm_cm, m.depth
+    (63.0, 2.5)
+    """
+    bundled = resources.files("skinfab") / "materials"
+    path = Path(name)
+    if path.suffix == ".toml":
+        source: Any = path
+    else:
+        source = bundled / f"{name}.toml"
+        if not source.is_file():
+            known = sorted(p.name[:-5] for p in bundled.iterdir() if p.name.endswith(".toml"))
+            raise InputError(f"no material profile named {str(name)!r}; there are {', '.join(known)}, or give a .toml file")
+    try:
+        data = tomllib.loads(source.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        raise InputError(f"no material profile at {path}") from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as fault:
+        raise InputError(f"{path} is not a TOML file: {fault}") from fault
+    where = f"material profile {name}"
+    layers = tuple(_build(Layer, layer, f"{where}, layer") for layer in data.pop("layers", []))
+    parts = {"ink": _build(Ink, data.pop("ink", {}), f"{where}, [ink]"), "mould": _build(Mould, data.pop("mould", {}), f"{where}, [mould]")}
+    return _build(Material, {**data, **parts, "layers": layers}, where)
+
+
+def _build(kind: type, data: dict[str, Any], where: str) -> Any:
+    expected = {f.name: f.type for f in fields(kind)}
+    if unknown := sorted(data.keys() - expected.keys()):
+        raise InputError(f"{where}: unknown field {unknown[0]!r}; it knows {', '.join(sorted(expected))}")
+    if missing := sorted(expected.keys() - data.keys()):
+        raise InputError(f"{where}: field {missing[0]!r} is missing")
+    values = dict(data)
+    for key, annotation in expected.items():
+        if annotation == "float":
+            if isinstance(values[key], bool) or not isinstance(values[key], (int, float)) or not values[key] >= 0:
+                raise InputError(f"{where}: {key} is {values[key]!r}; it must be a number, zero or more")
+            values[key] = float(values[key])
+    return kind(**values)

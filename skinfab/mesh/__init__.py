@@ -1,0 +1,1 @@
+"""Triangle meshes: the model, reading and writing, inspection, repair, units."""

@@ -1,0 +1,1 @@
+"""Sensor patterns: a small validated set of parameters plus an exact path, one file a pattern."""

@@ -1,0 +1,1 @@
+"""Where to cut: a set of seam edges, made by hand or found automatically."""

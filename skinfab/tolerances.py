@@ -1,0 +1,24 @@
+"""Every tolerance of the project, in one place, with the reason for its size.
+
+Lengths are mm unless the name says otherwise. Relative tolerances multiply the size named beside them.
+"""
+
+from __future__ import annotations
+
+#: Two path ends closer than this are the same point: well under the printer's 0.0001 mm output grid.
+JOIN_MM = 1e-6
+
+#: Largest difference of an emitted arc's start and end radius: LinuxCNC and Marlin planners accept this.
+ARC_RADIUS_MM = 0.002
+
+#: A triangle is degenerate when its height is under this fraction of its longest edge.
+DEGENERATE_HEIGHT = 1e-10
+
+#: Overlap of a flat piece is nothing when under this fraction of the piece's area.
+OVERLAP_FRACTION = 1e-6
+
+#: Mould cavity volume must equal area x depth within this fraction.
+CAVITY_FRACTION = 0.005
+
+#: Chord tolerance where a preview or a mesh needs a polyline.
+PREVIEW_CHORD_MM = 0.02
