@@ -1,0 +1,160 @@
+"""The `skinfab` command: finds the sub-command, runs it, and turns every fault into one line and an exit status.
+
+Nothing heavy is imported here, and of the sub-commands only the one that was asked for: `skinfab --help` answers at once.
+"""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import os
+import signal
+import sys
+import traceback
+import warnings
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from types import FrameType
+from typing import Any
+
+from skinfab import __version__
+from skinfab.errors import SkinfabError
+
+#: Sub-command and what it is for; `skinfab/cli/NAME.py` holds it.
+COMMANDS = {
+    "make": "mesh in, everything out: seams, flat pieces, sensors, G-code, moulds, report",
+    "inspect": "what is in a mesh and what repair would do to it",
+    "segment": "cut a mesh into pieces that flatten well",
+    "flatten": "flatten a mesh and say how good it is",
+    "place": "put sensors on the flat pieces",
+    "mould": "casting moulds for the flat pieces",
+    "gcode": "G-code for the sensors, or check a G-code file",
+}
+
+INTERRUPTED = 130  # what a shell reports for a command that Ctrl-C ended
+BROKEN_PIPE = 141  # and for one whose reader went away
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run `skinfab` with these arguments and return its exit status.
+
+    Parameters
+    ----------
+    argv : sequence of str, optional
+        Without the program's name; taken from ``sys.argv`` when left out.
+
+    Returns
+    -------
+    int
+        0 done, 1 the input cannot be used, 2 wrong usage, 3 a result was refused, 130 interrupted.
+
+    Examples
+    --------
+    >>> main(["--version"])  # doctest: +ELLIPSIS
+    skinfab ...
+    0
+    """
+    arguments = list(sys.argv[1:] if argv is None else argv)
+    # Two threads make the sparse factorisations slower; the libraries read this once, when numpy is first imported.
+    for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
+        os.environ.setdefault(variable, "1")
+    with _quiet_warnings(), _termination_as_interrupt():
+        return _guarded(lambda: _dispatch(arguments))
+
+
+def build_parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
+    """The parser for these arguments: the sub-command they name is complete, the others are their one line of help."""
+    parser = _Parser(prog="skinfab", description="From a 3D model to a printed, calibrated soft sensor skin.")
+    parser.add_argument("--version", action="version", version=f"skinfab {__version__}")
+    subparsers = parser.add_subparsers(metavar="COMMAND", required=True, title="commands")
+    wanted = next((a for a in arguments if not a.startswith("-")), None)
+    for name, summary in COMMANDS.items():
+        if name == wanted:
+            importlib.import_module(f"skinfab.cli.{name}").add_parser(subparsers)
+        else:
+            subparsers.add_parser(name, help=summary)
+    return parser
+
+
+class _Parser(argparse.ArgumentParser):
+    """A parser that takes no shortened option: `--max` that works today would break a script when `--max-time` comes."""
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__(**{"allow_abbrev": False, **options})
+
+
+def _dispatch(arguments: list[str]) -> int:
+    args = build_parser(arguments).parse_args(arguments)
+    return int(args.run(args))
+
+
+def _guarded(work: Callable[[], int]) -> int:
+    try:
+        status = work()
+        sys.stdout.flush()  # a full disk or a closed pipe must show here, not while Python shuts down
+        return status
+    except SystemExit as stop:  # argparse, after its own message
+        return stop.code if isinstance(stop.code, int) else 0 if stop.code is None else 1
+    except BrokenPipeError:
+        _drop_output()
+        return BROKEN_PIPE
+    except KeyboardInterrupt:
+        return _complain("interrupted; nothing half-written was left", INTERRUPTED)
+    except SkinfabError as fault:
+        return _complain(str(fault), fault.exit_status)
+    except MemoryError:
+        return _complain("not enough memory for this; close other programs, or give a mesh with fewer faces", 1)
+    except OSError as fault:
+        where = f"{fault.filename}: " if fault.filename is not None else ""
+        if fault.filename is None:
+            _drop_output()  # most likely standard output itself
+        return _complain(f"{where}{fault.strerror or fault}", 1)
+    except Exception as fault:
+        return _complain(
+            f"unexpected {type(fault).__name__}: {fault}; SKINFAB_TRACEBACK=1 shows where (a fault of skinfab: please report it)", 1
+        )
+
+
+def _complain(message: str, status: int) -> int:
+    if os.environ.get("SKINFAB_TRACEBACK") == "1":
+        traceback.print_exc()
+    print("skinfab:", " ".join(message.split()), file=sys.stderr)
+    return status
+
+
+def _drop_output() -> None:
+    """Nobody reads standard output: let what is left in its buffer go nowhere, so that Python's own last flush is silent."""
+    try:
+        descriptor = sys.stdout.fileno()
+    except (OSError, ValueError):  # not a real file (a test, a notebook): nothing to redirect
+        return
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, descriptor)
+    os.close(nowhere)
+
+
+@contextmanager
+def _quiet_warnings() -> Iterator[None]:
+    """Keep library warnings off the user's terminal, unless Python was started with -W or PYTHONWARNINGS."""
+    with warnings.catch_warnings():
+        if not sys.warnoptions:
+            warnings.simplefilter("ignore")
+        yield
+
+
+@contextmanager
+def _termination_as_interrupt() -> Iterator[None]:
+    """Let SIGTERM and SIGHUP unwind like Ctrl-C, so that temporary files go."""
+
+    def interrupt(signum: int, frame: FrameType | None) -> None:
+        raise KeyboardInterrupt
+
+    # Whatever was set to be ignored (nohup) stays ignored.
+    caught = [s for s in (signal.SIGTERM, signal.SIGHUP) if signal.getsignal(s) == signal.SIG_DFL]
+    try:
+        for s in caught:
+            signal.signal(s, interrupt)
+        yield
+    finally:
+        for s in caught:
+            signal.signal(s, signal.SIG_DFL)
