@@ -22,3 +22,15 @@ CAVITY_FRACTION = 0.005
 
 #: Chord tolerance where a preview or a mesh needs a polyline.
 PREVIEW_CHORD_MM = 0.02
+
+#: Least slack of a triangle inequality, as a fraction of the mean edge: needles below it are mollified.
+MOLLIFY = 1e-6
+
+#: Newton on d stops when the next step promises less than this fraction of what is left above 4.
+NEWTON_DECREASE = 1e-4
+
+#: Added to the Newton system's diagonal, as a fraction of its mean, so that rigid motions are fixed.
+NEWTON_RIDGE = 1e-9
+
+#: A start whose smallest singular value is under this fraction of its largest is taken from Tutte instead.
+FLAT_START = 1e-3

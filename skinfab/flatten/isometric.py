@@ -1,0 +1,156 @@
+"""Minimise d itself: a projected Newton method on the symmetric Dirichlet energy.
+
+Each triangle's Hessian is projected by its analytic eigensystem (Smith, de Goes and Kim 2019, "Analytic
+Eigensystems for Isotropic Distortion Energies", section 5): in 2D only the twist mode can be negative.
+The sparsity never changes, so the symbolic analysis is done once; the line search stops before the first
+triangle would collapse, so a start without flips stays without.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csc_array
+
+from skinfab.errors import InputError
+from skinfab.flatten._dirichlet import assemble, energies, first_collapse
+from skinfab.flatten.distortion import local_triangles
+from skinfab.linalg import Cholesky
+from skinfab.tolerances import NEWTON_DECREASE, NEWTON_RIDGE
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Refinement:
+    """Flat coordinates with less distortion than they had.
+
+    Parameters
+    ----------
+    UV : (n, 2) float64, mm
+    energy : tuple of float
+        Mean d at the start and after every step.
+    converged : bool
+        The last step promised less than the tolerance.
+    """
+
+    UV: FloatArray
+    energy: tuple[float, ...]
+    converged: bool
+
+
+class IsometricSolver:
+    """Built once for a mesh, it refines any flattening of it.
+
+    Parameters
+    ----------
+    V : (n, 3) float64, mm
+    F : (m, 3) int64
+        No triangle of zero area.
+
+    Raises
+    ------
+    InputError
+        A triangle has no area.
+
+    Examples
+    --------
+    >>> V = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
+    >>> solver = IsometricSolver(V, np.array([[0, 1, 2], [0, 2, 3]]))
+    >>> round(solver.refine(V[:, :2] * [1.5, 1]).energy[-1], 6)
+    4.0
+    """
+
+    def __init__(self, V: FloatArray, F: NDArray[np.int64]) -> None:
+        self.F, self.n = F, len(V)
+        rest = local_triangles(V, F)
+        twice_area = rest[:, 0, 0] * rest[:, 1, 1]
+        if not (twice_area > 0).all():
+            raise InputError(f"triangle {int(np.argmin(twice_area))} has no area and cannot be flattened; run with --repair")
+        self.weight = twice_area / twice_area.sum()
+        self.gradients = _basis_gradients(rest, twice_area)
+        self._slots, self._pattern = _sparsity(F, self.n)
+        self._cholesky: Cholesky | None = None
+
+    @property
+    def factorisations(self) -> int:
+        """How many numeric factorisations were done."""
+        return self._cholesky.factorisations if self._cholesky else 0
+
+    def refine(self, UV: FloatArray, *, max_steps: int = 60, tolerance: float = NEWTON_DECREASE, stop_at: float = 0.0) -> Refinement:
+        """Newton steps until the promised decrease of the mean d is below `tolerance` x (mean d - 4).
+
+        Parameters
+        ----------
+        UV : (n, 2) float64, mm
+            A flattening without flipped triangles.
+        max_steps : int
+        tolerance : float
+        stop_at : float
+            Stop as soon as the mean d is at or under this.
+
+        Raises
+        ------
+        InputError
+            The start has a flipped or collapsed triangle.
+        """
+        u = np.ascontiguousarray(UV, dtype=np.float64).copy()
+        energy = [energies(u, self.F, self.gradients, self.weight)]
+        if not np.isfinite(energy[0]):
+            raise InputError("the start of the refinement has flipped triangles; untangle it first")
+        converged = False
+        while len(energy) <= max_steps and energy[-1] > stop_at:
+            step, slope = self._newton_step(u)
+            if -slope <= tolerance * max(energy[-1] - 4, tolerance):
+                converged = True
+                break
+            u_next, e_next = self._line_search(u, step, slope, energy[-1])
+            if e_next >= energy[-1]:
+                converged = True
+                break
+            u = u_next
+            energy.append(e_next)
+        return Refinement(u, tuple(energy), converged)
+
+    def _newton_step(self, u: FloatArray) -> tuple[FloatArray, float]:
+        data, gradient = assemble(u, self.F, self.gradients, self.weight, self._slots, self._pattern.nnz)
+        # The rigid motions cost nothing: a ridge far below the stiffness fixes them.
+        diagonal = self._pattern.indptr[:-1]
+        data[diagonal] += NEWTON_RIDGE * data[diagonal].mean()
+        if self._cholesky is None:
+            pattern = self._pattern
+            self._cholesky = Cholesky(csc_array((data, pattern.indices, pattern.indptr), shape=pattern.shape))
+        else:
+            self._cholesky.refactor(data)
+        step = self._cholesky.solve(-gradient)
+        return step.reshape(-1, 2), float(gradient @ step)
+
+    def _line_search(self, u: FloatArray, step: FloatArray, slope: float, start: float) -> tuple[FloatArray, float]:
+        t = min(1.0, 0.9 * first_collapse(u, step, self.F))
+        for _ in range(40):
+            trial = u + t * step
+            e = energies(trial, self.F, self.gradients, self.weight)
+            if e <= start + 1e-4 * t * slope:
+                return trial, e
+            t /= 2
+        return u, start
+
+
+def _basis_gradients(rest: FloatArray, twice_area: FloatArray) -> FloatArray:
+    """Gradients of the three hat functions in each triangle's frame, (m, 3, 2) 1/mm: J = sum of u_k g_k^T."""
+    g1 = np.stack([rest[:, 1, 1], -rest[:, 1, 0]], axis=1) / twice_area[:, None]
+    g2 = np.stack([-rest[:, 0, 1], rest[:, 0, 0]], axis=1) / twice_area[:, None]
+    return np.ascontiguousarray(np.stack([-g1 - g2, g1, g2], axis=1))
+
+
+def _sparsity(F: NDArray[np.int64], n: int) -> tuple[NDArray[np.int64], csc_array]:
+    """Where each of a triangle's 21 lower entries goes in the (2n, 2n) lower CSC matrix: (m, 21) and the pattern."""
+    unknown = np.stack([2 * F, 2 * F + 1], axis=2).reshape(-1, 6)
+    i, j = np.tril_indices(6)
+    low, high = np.minimum(unknown[:, i], unknown[:, j]), np.maximum(unknown[:, i], unknown[:, j])
+    keys, slots = np.unique(low * (2 * n) + high, return_inverse=True)
+    columns, rows = keys // (2 * n), keys % (2 * n)
+    indptr = np.searchsorted(columns, np.arange(2 * n + 1))
+    return slots.reshape(low.shape), csc_array((np.ones(len(keys)), rows, indptr), shape=(2 * n, 2 * n))
