@@ -99,8 +99,8 @@ def _signals_wait() -> Iterator[None]:
         for number, handler in before.items():
             if callable(handler):
                 signal.signal(number, handler)
-        for number in dict.fromkeys(held):
-            signal.raise_signal(number)
+        for got in dict.fromkeys(held):
+            signal.raise_signal(got)
 
 
 def _or_explain(work: Callable[[], None], target: Path) -> None:
