@@ -34,3 +34,15 @@ NEWTON_RIDGE = 1e-9
 
 #: A start whose smallest singular value is under this fraction of its largest is taken from Tutte instead.
 FLAT_START = 1e-3
+
+#: Mould outlines lie on this grid: single precision (an STL file) tells its points apart up to 800 mm.
+MOULD_GRID_MM = 1e-4
+
+#: A slit of the outline narrower than this is no wall in any printer; its two sides are joined.
+MOULD_SLIT_MM = 0.01
+
+#: The thinnest wall a slicer keeps: one line of the commonest nozzle.
+PRINTABLE_WALL_MM = 0.4
+
+#: Step to which a message rounds a pattern's parameter: finer than any printer places a bead.
+PARAMETER_STEP_MM = 0.001

@@ -1,0 +1,175 @@
+"""Casting moulds: a flat piece becomes a printable tray that silicone is poured into."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from skinfab.errors import InputError, RefusedError
+from skinfab.files import atomic_write
+from skinfab.material import Material
+from skinfab.mesh.topology import Topology
+from skinfab.mould_plan import MouldPlan, mould_plan
+from skinfab.pieces import Piece
+from skinfab.tolerances import CAVITY_FRACTION
+
+#: How far the wall stands above the silicone, mm: the pour does not run over before it levels, and
+#: a 0.25 mm wire lies in a slot of this depth without the slot reaching the silicone.
+FREEBOARD_MM = 0.5
+
+
+@dataclass(frozen=True, eq=False)
+class CastingMould:
+    """A mould ready to be printed, in the piece frame; z = 0 is the underside.
+
+    Parameters
+    ----------
+    piece : str
+        Id of the piece.
+    V : (n, 3) float32, mm
+        As an STL holds it: checked after rounding to single precision.
+    F : (m, 3) int64
+    floor_z, fill_z, top_z : float, mm
+        Heights of the cavity's floor, of the silicone's surface and of the wall's top.
+    area_mm2, depth : float
+        Of the piece, and of the silicone (mm).
+    cavity_ml : float
+        Volume up to `fill_z`, measured on `V` and `F`.
+    marks : (3, 2) float, mm
+        The L marks' corner points: lower left, lower right, upper left. The lower left one is what
+        the nozzle is jogged to.
+    warnings : tuple of str
+    """
+
+    piece: str
+    V: NDArray[np.float32]
+    F: NDArray[np.int64]
+    floor_z: float
+    fill_z: float
+    top_z: float
+    area_mm2: float
+    depth: float
+    cavity_ml: float
+    marks: NDArray[np.float64]
+    warnings: tuple[str, ...]
+
+    def __repr__(self) -> str:
+        return f"CastingMould({self.piece!r}, {len(self.F)} triangles, cavity {self.cavity_ml:.2f} ml)"
+
+    @property
+    def watertight(self) -> bool:
+        """Every edge has one triangle on either side, wound alike."""
+        return is_watertight(self.F)
+
+
+def casting_mould(piece: Piece, *, material: Material, depth: float | None = None, exits: Sequence[ArrayLike] = ()) -> CastingMould:
+    """The mould of one flat piece: floor plate, wall, registration marks, wire slots.
+
+    The wall fills the darts. Its top is `FREEBOARD_MM` above the silicone, and the slots for the wires end
+    at the silicone's surface, so that nothing runs out.
+
+    Parameters
+    ----------
+    piece : Piece
+    material : Material
+        Its `mould` table holds the dimensions.
+    depth : float, mm, optional
+        Of the silicone; the material's layers together by default.
+    exits : sequence of (2,) float, mm
+        Terminals, in the piece frame.
+
+    Raises
+    ------
+    InputError
+        A dimension that cannot be printed.
+    RefusedError
+        The finished mesh is not watertight, or its cavity is not the piece's area times `depth` within
+        ``tolerances.CAVITY_FRACTION``.
+
+    Examples
+    --------
+    >>> from skinfab.material import load_material
+    >>> F, UV = np.array([[0, 1, 2], [0, 2, 3]]), np.array([[0.0, 0], [40, 0], [40, 20], [0, 20]])
+    >>> casting_mould(Piece("P1", np.arange(2), np.arange(4), F, UV), material=load_material())
+    CastingMould('P1', 128 triangles, cavity 2.00 ml)
+    """
+    depth = material.depth if depth is None else depth
+    if not (np.isfinite(depth) and depth > 0):
+        raise InputError(f"the silicone's depth is {depth:g} mm; it must be positive")
+    plan = mould_plan(piece, mould=material.mould, exits=exits)
+    floor_z = material.mould.floor
+    fill_z, top_z = floor_z + depth, floor_z + depth + FREEBOARD_MM
+    V, F = _printable(_solid(plan, floor_z, fill_z, top_z))
+    if not is_watertight(F):
+        raise RefusedError(f"the mould of piece {piece.id} is not watertight; simplify the piece's outline and try again")
+    cavity = _cavity_volume(V, F, plan, floor_z, fill_z)
+    expected = piece.area * depth
+    if not abs(cavity - expected) <= CAVITY_FRACTION * expected:
+        raise RefusedError(
+            f"the mould of piece {piece.id} holds {cavity / 1000:.3f} ml but the piece needs {expected / 1000:.3f} ml "
+            f"(area {piece.area:.1f} mm^2 x {depth:g} mm); check the flat piece for overlaps"
+        )
+    return CastingMould(piece.id, V, F, floor_z, fill_z, top_z, piece.area, depth, cavity / 1000, plan.marks, plan.warnings)
+
+
+def write_mould(mould: CastingMould, path: str | Path) -> None:
+    """Write the mould as binary STL, whole or not at all; the same mould gives the same bytes."""
+    facets = np.zeros(len(mould.F), dtype=[("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+    facets["corners"] = mould.V[mould.F]
+    # Normals are left zero: every reader takes them from the corners' order.
+    header = f"skinfab mould of piece {mould.piece}, mm".encode("ascii", "replace")[:80].ljust(80)
+    atomic_write(path, header + np.uint32(len(facets)).astype("<u4").tobytes() + facets.tobytes())
+
+
+def is_watertight(F: NDArray[np.int64]) -> bool:
+    """Whether each edge is used once in either direction, and there is at least one triangle."""
+    if not len(F):
+        return False
+    start, end = F.ravel(), np.roll(F, -1, axis=1).ravel()
+    sign = np.where(start < end, 1, -1)
+    topology = Topology(F)
+    turn = np.zeros(len(topology.E), dtype=np.int64)
+    np.add.at(turn, topology.FE.ravel(), sign)
+    return bool((topology.edge_count == 2).all() and not turn.any())
+
+
+def _solid(plan: MouldPlan, floor_z: float, fill_z: float, top_z: float) -> Any:
+    """The mould as a manifold3d solid."""
+    above = top_z - fill_z  # cuts reach this far past the top, so that no two faces coincide
+    plate = _prism(plan.plate, 0.0, floor_z) - _prism(plan.grooves, floor_z / 2, floor_z + above)
+    wall = _prism(plan.wall, floor_z / 2, top_z)
+    if not plan.slots.is_empty:
+        wall -= _prism(plan.slots, fill_z, top_z + above)
+    return plate + wall
+
+
+def _prism(region: Any, low: float, high: float) -> Any:
+    from manifold3d import CrossSection, FillRule
+
+    polygons = getattr(region, "geoms", [region])
+    rings = [np.asarray(ring.coords)[:-1] for part in polygons for ring in (part.exterior, *part.interiors)]
+    return CrossSection(rings, FillRule.EvenOdd).extrude(high - low).translate((0.0, 0.0, low))
+
+
+def _printable(solid: Any) -> tuple[NDArray[np.float32], NDArray[np.int64]]:
+    """Vertices and triangles in single precision, in an order that depends on the shape alone."""
+    mesh = solid.to_mesh64()
+    V, back = np.unique(mesh.vert_properties[:, :3].astype(np.float32), axis=0, return_inverse=True)
+    F = back.reshape(-1)[mesh.tri_verts.astype(np.int64)]
+    F = F[(F[:, 0] != F[:, 1]) & (F[:, 1] != F[:, 2]) & (F[:, 2] != F[:, 0])]
+    first = F.argmin(axis=1)
+    F = np.take_along_axis(F, (first[:, None] + np.arange(3)) % 3, axis=1)
+    return V, np.ascontiguousarray(F[np.lexsort(F.T[::-1])])
+
+
+def _cavity_volume(V: NDArray[np.float32], F: NDArray[np.int64], plan: MouldPlan, floor_z: float, fill_z: float) -> float:
+    """What fits in: a block that ends inside the wall, less the mould's own mesh (mm^3)."""
+    from manifold3d import Manifold, Mesh64
+
+    mesh = Manifold(Mesh64(V.astype(np.float64), F.astype(np.uint64)))
+    return float((_prism(plan.block, floor_z, fill_z) - mesh).volume())

@@ -1,0 +1,197 @@
+"""The casting mould seen from above: cavity, wall, plate, registration marks and wire slots.
+
+All regions are shapely polygons in the piece frame (mm), on a grid fine enough for the printer and
+coarse enough for the single precision of an STL file.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+import shapely.ops
+from numpy.typing import ArrayLike, NDArray
+from shapely.geometry import MultiPolygon, Polygon, box
+from shapely.geometry.base import BaseGeometry
+
+from skinfab.errors import InputError
+from skinfab.material import Mould
+from skinfab.pieces import Piece
+from skinfab.tolerances import MOULD_GRID_MM, MOULD_SLIT_MM, OVERLAP_FRACTION, PRINTABLE_WALL_MM
+
+
+@dataclass(frozen=True, eq=False)
+class MouldPlan:
+    """What stands where, from above.
+
+    Parameters
+    ----------
+    cavity : MultiPolygon
+        Where silicone is cast: the piece.
+    wall : MultiPolygon
+        Round the cavity, and in its darts.
+    block : MultiPolygon
+        The cavity and the inner half of its wall: what is measured.
+    plate : Polygon
+        The rectangular floor.
+    marks : (3, 2) float, mm
+        Corner points of the L marks: lower left, lower right, upper left.
+    grooves : MultiPolygon
+        The L marks as cut.
+    slots : MultiPolygon
+        The wire exits as cut.
+    warnings : tuple of str
+        Places the printer or the silicone will not follow the outline.
+    """
+
+    cavity: MultiPolygon
+    wall: MultiPolygon
+    block: MultiPolygon
+    plate: Polygon
+    marks: NDArray[np.float64]
+    grooves: MultiPolygon
+    slots: MultiPolygon
+    warnings: tuple[str, ...]
+
+
+def mould_plan(piece: Piece, *, mould: Mould, exits: Sequence[ArrayLike] = ()) -> MouldPlan:
+    """Plan a piece's mould.
+
+    Parameters
+    ----------
+    piece : Piece
+    mould : Mould
+        Its dimensions, from the material profile.
+    exits : sequence of (2,) float, mm
+        Terminals in the piece frame; each gets a slot in the nearest wall that has the outside behind it.
+
+    Raises
+    ------
+    InputError
+        A mould dimension that cannot be printed, or the piece has no area.
+    """
+    for name in ("wall", "floor"):
+        if getattr(mould, name) < PRINTABLE_WALL_MM:
+            raise InputError(
+                f"mould.{name} is {getattr(mould, name):g} mm; a printer needs at least {PRINTABLE_WALL_MM:g} mm, "
+                "so raise it in the material profile"
+            )
+    if not mould.mark > 0:
+        raise InputError("mould.mark is 0 mm; the G-code origin is found by the marks, so give their arm a length in the material profile")
+    if len(exits) and not mould.wire_exit > 0:
+        raise InputError("mould.wire_exit is 0 mm but the piece has terminals; give the slot a width in the material profile")
+    cavity = cavity_region(piece)
+    if cavity.is_empty:
+        raise InputError(f"piece {piece.id} has no area to cast; flatten it again")
+    # Gaps between two outer walls that are narrower than half a wall are filled: nothing cleans them.
+    fill = mould.wall / 2
+    outer = _on_grid(cavity.buffer(mould.wall + fill, join_style="mitre", mitre_limit=2).buffer(-fill, join_style="mitre", mitre_limit=2))
+    wall = _on_grid(outer - cavity)
+    xmin, ymin, xmax, ymax = outer.bounds
+    plate = box(xmin - mould.mark, ymin - mould.mark, xmax + mould.mark, ymax + mould.mark)
+    inset = mould.mark / 2
+    low, high = np.array([xmin, ymin]) - inset, np.array([xmax, ymax]) + inset
+    marks = np.array([low, [high[0], low[1]], [low[0], high[1]]])
+    grooves = [_l_mark(corner, inward, mould) for corner, inward in zip(marks, [(1, 1), (-1, 1), (1, -1)], strict=True)]
+    slots = [_slot(np.asarray(point, dtype=float), cavity, outer, mould) for point in exits]
+    return MouldPlan(
+        cavity=cavity,
+        wall=wall,
+        block=_on_grid(cavity.buffer(mould.wall / 2)),
+        plate=plate,
+        marks=marks,
+        grooves=_on_grid(shapely.union_all(grooves)),
+        slots=_on_grid(shapely.union_all(slots)),
+        warnings=_narrow_places(piece, cavity, wall, mould),
+    )
+
+
+def cavity_region(piece: Piece) -> MultiPolygon:
+    """The flat piece as a valid region, darts that close to nothing healed.
+
+    An exact net touches itself and a dart may close, so the outline need not be a valid polygon; the
+    union of the flat triangles always is the piece. Slits under ``tolerances.MOULD_SLIT_MM`` are healed:
+    in an STL their two sides would be one edge with four faces.
+    """
+    outline: BaseGeometry = Polygon(piece.outline)
+    if not (outline.is_valid and abs(outline.area - _triangle_area(piece)) <= OVERLAP_FRACTION * outline.area):
+        outline = shapely.union_all(shapely.polygons(piece.UV[piece.F]), grid_size=MOULD_GRID_MM)
+    # Growing square and shrinking round leaves every convex corner sharp and widens a corner contact
+    # to a neck, which an STL can hold.
+    half = MOULD_SLIT_MM / 2
+    healed = outline.buffer(half, join_style="mitre", mitre_limit=5).buffer(-half, join_style="round", quad_segs=1)
+    return _on_grid(healed)
+
+
+def _triangle_area(piece: Piece) -> float:
+    a, b, c = (piece.UV[piece.F[:, k]] for k in range(3))
+    u, v = b - a, c - a
+    return float(np.abs(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]).sum()) / 2
+
+
+def _on_grid(region: BaseGeometry) -> MultiPolygon:
+    """On the mould's grid, as a MultiPolygon of what has area."""
+    snapped = shapely.set_precision(region, MOULD_GRID_MM)
+    return MultiPolygon([part for part in shapely.get_parts(snapped) if isinstance(part, Polygon) and part.area > 0])
+
+
+def _l_mark(corner: NDArray[np.float64], inward: tuple[int, int], mould: Mould) -> BaseGeometry:
+    """Two grooves whose centre lines meet at `corner`."""
+    half = mould.wall / 4
+    along, up = mould.mark * np.array(inward)
+    x, y = corner
+    across_x = box(min(x - half, x + along), y - half, max(x + half, x + along), y + half)
+    across_y = box(x - half, min(y - half, y + up), x + half, max(y + half, y + up))
+    return across_x | across_y
+
+
+def _slot(point: NDArray[np.float64], cavity: MultiPolygon, outer: MultiPolygon, mould: Mould) -> BaseGeometry:
+    """A straight cut through the wall nearest to `point` that has the outside behind it."""
+    if point.shape != (2,) or not np.isfinite(point).all():
+        raise InputError(f"a wire exit is {point.tolist()}; it must be a point (x, y) in mm")
+    # Not through a dart: the wire would come out over the other flank.
+    shore = shapely.MultiLineString([part.exterior for part in outer.geoms]).buffer(mould.wall * 1.05)
+    exposed = cavity.boundary & shore
+    if exposed.is_empty:
+        exposed = cavity.boundary
+    at, _ = shapely.ops.nearest_points(exposed, shapely.Point(point))
+    start = np.array([at.x, at.y])
+    outside, _ = shapely.ops.nearest_points(outer.boundary, at)
+    way = np.array([outside.x, outside.y]) - start
+    way /= np.hypot(*way)
+    cut = shapely.LineString([start - way * mould.wall / 2, start + way * mould.wall * 2])
+    return cut.buffer(mould.wire_exit / 2, cap_style="flat")
+
+
+def _narrow_places(piece: Piece, cavity: MultiPolygon, wall: MultiPolygon, mould: Mould) -> tuple[str, ...]:
+    """Darts the printer cannot make: too thin a wall, or none at all."""
+    notes = []
+    half = PRINTABLE_WALL_MM / 2
+    opened = wall.buffer(-half, join_style="mitre").buffer(half * 1.01)
+    # Every dart is thin at its tip; it matters once it is longer than the wall is wide.
+    long = [part for part in _on_grid(wall - opened).geoms if _extent(part) > mould.wall]
+    if long:
+        first = max(long, key=_extent)
+        notes.append(
+            f"piece {piece.id}: {len(long)} dart{'s' * (len(long) > 1)} narrower than {PRINTABLE_WALL_MM:g} mm over "
+            f"{sum(_extent(p) for p in long):.1f} mm, the longest near ({first.centroid.x:.1f}, {first.centroid.y:.1f}) mm; "
+            "the printer may leave out the wall there: cut the silicone along it after curing"
+        )
+    closed = shapely.LinearRing(piece.outline) - cavity.boundary.buffer(2 * MOULD_SLIT_MM)
+    # Its two sides lie on each other or nearly so: a ribbon round both is counted once.
+    length = closed.buffer(half, cap_style="flat").area / (2 * half)
+    if length > mould.wall:
+        x, y = closed.centroid.x, closed.centroid.y
+        notes.append(
+            f"piece {piece.id}: the outline touches itself over {length:.1f} mm near ({x:.1f}, {y:.1f}) mm; "
+            "the silicone is cast in one piece there: cut it along the drawing after curing"
+        )
+    return tuple(notes)
+
+
+def _extent(part: Polygon) -> float:
+    """Diagonal of the bounding box, mm: the length of something long and thin."""
+    xmin, ymin, xmax, ymax = part.bounds
+    return float(np.hypot(xmax - xmin, ymax - ymin))

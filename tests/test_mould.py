@@ -1,0 +1,210 @@
+"""Moulds are read back from their STL by another library; the volumes are worked out without ours."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import igl
+import numpy as np
+import pytest
+import shapely
+import trimesh
+from numpy.typing import NDArray
+
+from skinfab.errors import InputError, RefusedError
+from skinfab.material import load_material
+from skinfab.mould import FREEBOARD_MM, CastingMould, casting_mould, is_watertight, write_mould
+from skinfab.pieces import Piece
+
+MATERIAL = load_material()
+
+
+def piece_from_cells(cells: list[tuple[int, int]], size: float, *, joins: list[tuple[int, int]] | None = None) -> Piece:
+    """Squares laid edge to edge; `joins` names which pairs share vertices (all neighbours if None)."""
+    UV, F = [], []
+    owner: dict[tuple[int, tuple[int, int]], int] = {}
+    group = list(range(len(cells)))
+    joined = {frozenset(j) for j in joins} if joins is not None else None
+    for k, (cx, cy) in enumerate(cells):
+        ids = []
+        for dx, dy in ((0, 0), (1, 0), (1, 1), (0, 1)):
+            at = (cx + dx, cy + dy)
+            shared = None
+            for j in group[:k]:
+                near = abs(cells[j][0] - cx) + abs(cells[j][1] - cy) == 1
+                if (j, at) in owner and near and (joined is None or frozenset((j, k)) in joined):
+                    shared = owner[(j, at)]
+            if shared is None:
+                UV.append(at)
+                shared = len(UV) - 1
+            owner[(k, at)] = shared
+            ids.append(shared)
+        F += [[ids[0], ids[1], ids[2]], [ids[0], ids[2], ids[3]]]
+    flat = np.array(UV, dtype=float) * size
+    return make_piece(flat - flat.min(axis=0), np.array(F))
+
+
+def make_piece(UV: NDArray[np.float64], F: NDArray[np.int64]) -> Piece:
+    return Piece("P1", np.arange(len(F)), np.arange(len(UV)), F, UV)
+
+
+def piece_from_outline(outline: NDArray[np.float64]) -> Piece:
+    """Ear-free triangulation of a simple polygon: its constrained Delaunay triangles."""
+    triangles = shapely.constrained_delaunay_triangles(shapely.Polygon(outline))
+    index = {tuple(p): k for k, p in enumerate(outline)}
+    F = np.array([[index[tuple(c)] for c in np.asarray(shapely.orient_polygons(t).exterior.coords)[:3]] for t in triangles.geoms])
+    return make_piece(outline - outline.min(axis=0), F)
+
+
+def dart_piece(opening: float) -> Piece:
+    """A 60 x 40 plate with a 30 mm dart from its upper edge, `opening` wide at the edge."""
+    return piece_from_outline(np.array([[0, 0], [60, 0], [60, 40], [30 + opening / 2, 40], [30, 10], [30 - opening / 2, 40], [0, 40.0]]))
+
+
+def noisy_outline() -> NDArray[np.float64]:
+    rng = np.random.default_rng(7)
+    angle = np.linspace(0, 2 * np.pi, 300, endpoint=False)
+    radius = 40 + 6 * np.sin(5 * angle) + rng.normal(0, 0.3, 300)
+    return radius[:, None] * np.c_[np.cos(angle), np.sin(angle)]
+
+
+PIECES = {
+    "rectangle": piece_from_cells([(0, 0), (1, 0)], 20.0),
+    "L": piece_from_cells([(0, 0), (1, 0), (0, 1), (0, 2)], 15.0),
+    "cube net": piece_from_cells([(1, 0), (1, 1), (1, 2), (1, 3), (0, 2), (2, 2)], 22.0),
+    # A ring of squares that is open between the first and the last: the two lie edge on edge.
+    "closed dart": piece_from_cells(
+        [(0, 0), (1, 0), (2, 0), (2, 1), (1, 1), (0, 1)], 15.0, joins=[(0, 1), (1, 2), (2, 3), (3, 4), (4, 5), (1, 4)]
+    ),
+    # Two arms whose ends meet in one corner point.
+    "corner contact": piece_from_cells([(1, 0), (0, 0), (0, 1), (0, 2), (1, 2), (2, 2), (2, 1)], 10.0),
+    "sharp dart": dart_piece(4.0),
+    "noisy": piece_from_outline(noisy_outline()),
+}
+
+
+def read_back(mould: CastingMould, folder: Path) -> trimesh.Trimesh:
+    write_mould(mould, folder / "P1.stl")
+    return trimesh.load_mesh(folder / "P1.stl")
+
+
+def filled(solid: trimesh.Trimesh, points: list[list[float]]) -> NDArray[np.bool_]:
+    """Whether each point is inside the plastic, by the winding number."""
+    return igl.fast_winding_number(np.array(solid.vertices), np.array(solid.faces, dtype=np.int64), np.array(points)) > 0.5
+
+
+@pytest.mark.parametrize("name", PIECES)
+def test_stl_is_watertight_and_its_cavity_is_area_times_depth(name: str, tmp_path: Path) -> None:
+    piece = PIECES[name]
+    terminals = [piece.UV.mean(axis=0), piece.UV[0]]
+    mould = casting_mould(piece, material=MATERIAL, exits=terminals)
+    solid = read_back(mould, tmp_path)
+    assert solid.is_watertight and solid.is_winding_consistent and solid.volume > 0 and mould.watertight
+    assert len(solid.split(only_watertight=False)) == 1
+
+    # The cavity by slices: at each height the plate's hollow is the inside of the wall's section.
+    area = np.abs(igl.doublearea(piece.UV, piece.F)).sum() / 2
+    heights = np.linspace(mould.floor_z, mould.fill_z, 8)[1:-1]
+    hollow = []
+    for z in heights:
+        section = solid.section(plane_origin=[0, 0, z], plane_normal=[0, 0, 1])
+        loops = [shapely.Polygon(loop[:, :2]) for loop in section.discrete]
+        plastic = loops[0]
+        for loop in loops[1:]:
+            plastic = plastic ^ loop
+        inside = shapely.union_all(loops) - plastic
+        # Pockets between two outer walls are hollow too, but they hold no silicone.
+        seeds = shapely.points(piece.UV[piece.F].mean(axis=1))
+        hollow.append(sum(part.area for part in shapely.get_parts(inside) if shapely.contains(part, seeds).any()))
+    np.testing.assert_allclose(hollow, area, rtol=0.005)
+    assert mould.cavity_ml == pytest.approx(area * 2.5 / 1000, rel=0.005)
+    assert mould.top_z - mould.fill_z == FREEBOARD_MM
+    assert solid.bounds[1, 2] == pytest.approx(mould.top_z, abs=1e-5) and solid.bounds[0, 2] == 0
+
+
+def test_volume_by_hand(tmp_path: Path) -> None:
+    # 40 x 20 piece, wall 1.6, plate 6 beyond it; grooves 0.8 wide and 0.8 deep, an L of 6 + 6 + 0.8/2 corner.
+    mould = casting_mould(PIECES["rectangle"], material=MATERIAL)
+    outer, plate = 43.2 * 23.2, (43.2 + 12) * (23.2 + 12)
+    groove = 2 * 6.4 * 0.8 - 0.8**2
+    by_hand = plate * 1.6 + (outer - 800) * 3.0 - 3 * groove * 0.8
+    assert read_back(mould, tmp_path).volume == pytest.approx(by_hand, rel=1e-4)
+    np.testing.assert_allclose(mould.marks, [[-4.6, -4.6], [44.6, -4.6], [-4.6, 24.6]], atol=1e-9)
+
+
+def test_marks_are_grooves_where_they_are_said_to_be(tmp_path: Path) -> None:
+    mould = casting_mould(PIECES["L"], material=MATERIAL)
+    solid = read_back(mould, tmp_path)
+    for x, y in mould.marks:
+        assert filled(solid, [[x, y, 0.4]])[0] and not filled(solid, [[x, y, 1.2]])[0]
+        assert filled(solid, [[x - np.sign(x) * 1.0, y - np.sign(y) * 1.0, 1.2]])[0]  # beside the groove
+
+
+def test_slots_let_the_wire_out_above_the_silicone_only(tmp_path: Path) -> None:
+    mould = casting_mould(PIECES["rectangle"], material=MATERIAL, exits=[(3.0, 12.0)])
+    solid = read_back(mould, tmp_path)
+    in_wall = [-0.8, 12.0]
+    assert not filled(solid, [[*in_wall, mould.fill_z + 0.25]])[0]
+    assert filled(solid, [[*in_wall, mould.fill_z - 0.05]])[0]
+    assert filled(solid, [[-0.8, 14.0, mould.fill_z + 0.25]])[0]
+
+
+def test_slot_does_not_open_into_a_dart(tmp_path: Path) -> None:
+    mould = casting_mould(PIECES["sharp dart"], material=MATERIAL, exits=[(27.0, 20.0)])
+    plain = casting_mould(PIECES["sharp dart"], material=MATERIAL)
+    solid = read_back(mould, tmp_path)
+    dart_wall = [[30.0, y, mould.fill_z + 0.25] for y in (16.0, 20.0, 24.0)]
+    assert filled(solid, dart_wall).all()
+    assert solid.volume < read_back(plain, tmp_path).volume - 0.2
+
+
+def test_wall_fills_a_dart_and_a_thin_one_is_named(tmp_path: Path) -> None:
+    wide = casting_mould(dart_piece(4.0), material=MATERIAL)
+    assert filled(read_back(wide, tmp_path), [[30.0, 30.0, 3.0]])[0]
+    # 4 mm over 30 mm: thinner than 0.4 mm over the last 3 mm. 1 mm: over the last 12 mm.
+    narrow = casting_mould(dart_piece(1.0), material=MATERIAL)
+    found = re.search(r"1 dart narrower than 0.4 mm over ([\d.]+) mm", narrow.warnings[0])
+    assert found and float(found[1]) == pytest.approx(12, abs=0.4)  # a bead ends half its width early
+    assert casting_mould(dart_piece(12.0), material=MATERIAL).warnings == ()
+
+
+def test_closed_dart_is_cast_in_one_and_said_so() -> None:
+    (note,) = casting_mould(PIECES["closed dart"], material=MATERIAL).warnings
+    assert "touches itself over 15.0 mm" in note
+
+
+def test_same_mould_same_bytes(tmp_path: Path) -> None:
+    for name in ("a.stl", "b.stl"):
+        write_mould(casting_mould(PIECES["noisy"], material=MATERIAL), tmp_path / name)
+    assert (tmp_path / "a.stl").read_bytes() == (tmp_path / "b.stl").read_bytes()
+
+
+def test_overlapping_piece_is_refused() -> None:
+    # Three wings of a fan wound past a full turn: the outline's area counts the overlap twice.
+    angle = np.linspace(0, 2.6 * np.pi, 14)
+    UV = np.vstack([[0, 0], 20 * np.c_[np.cos(angle), np.sin(angle)]])
+    F = np.array([[0, k, k + 1] for k in range(1, 14)])
+    with pytest.raises(RefusedError, match="check the flat piece for overlaps"):
+        casting_mould(make_piece(UV - UV.min(axis=0), F), material=MATERIAL)
+
+
+@pytest.mark.parametrize("field", ["wall", "floor", "mark"])
+def test_unprintable_dimensions_are_refused(field: str) -> None:
+    thin = replace(MATERIAL, mould=replace(MATERIAL.mould, **{field: 0.0}))
+    with pytest.raises(InputError, match=rf"mould\.{field} is 0 mm"):
+        casting_mould(PIECES["L"], material=thin)
+
+
+def test_depth_must_be_positive() -> None:
+    with pytest.raises(InputError, match="must be positive"):
+        casting_mould(PIECES["L"], material=MATERIAL, depth=0)
+
+
+def test_watertight_check_can_fail() -> None:
+    box = trimesh.creation.box().faces.astype(np.int64)
+    assert is_watertight(box)
+    assert not is_watertight(box[1:])
+    assert not is_watertight(np.vstack([box[1:], box[:1, ::-1]]))
+    assert not is_watertight(np.zeros((0, 3), np.int64))
