@@ -46,3 +46,7 @@ PRINTABLE_WALL_MM = 0.4
 
 #: Step to which a message rounds a pattern's parameter: finer than any printer places a bead.
 PARAMETER_STEP_MM = 0.001
+
+#: An arc whose ends lie closer than this is printed as a line: 100 cells of the 0.0001 mm output grid, below which
+#: rounding could turn its end behind its start and so make a full circle of it.
+SHORT_ARC_MM = 0.01

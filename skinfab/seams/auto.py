@@ -1,0 +1,105 @@
+"""Find seams by itself: few good pieces, cut on creases where there are any.
+
+Two ways are tried on a mesh of a few thousand triangles and the better one is kept: from the regions between
+sharp edges (exact for polyhedra and machined parts), and from the whole surface opened by one cut (best for
+organic shapes). A finer mesh then gets the seams by shortest paths, and every piece is judged anew on it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from skinfab.mesh.model import Mesh
+from skinfab.seams.coarse import coarsen, transfer
+from skinfab.seams.creases import borders, crease_seams, merge_small
+from skinfab.seams.cut import seam_length
+from skinfab.seams.glue import glue_pieces
+from skinfab.seams.judge import Limits
+from skinfab.seams.refine import Judged, refine_seams
+from skinfab.seams.weights import seam_weights
+
+BoolArray = NDArray[np.bool_]
+
+#: Seams are searched on about this many triangles.
+_COARSE_FACES = 3000
+
+#: The search aims below the bound by this part of what it allows above 4, because the fine mesh shows more.
+_AIM = 0.7
+
+#: Gluing may cost this part of what the bound allows above 4.
+_GLUE_EXCESS = 0.1
+
+#: A transferred scrap under this part of the surface joins its neighbour.
+_SCRAP = 0.002
+
+
+@dataclass(frozen=True, eq=False)
+class Seams:
+    """A seam set and the good pieces it gives.
+
+    Parameters
+    ----------
+    cut : (e,) bool
+        Per edge of the mesh.
+    pieces : list of (OpenPiece, Verdict)
+    """
+
+    cut: BoolArray
+    pieces: list[Judged]
+
+
+def find_seams(mesh: Mesh, limits: Limits, *, neck: float = 4.0, progress: Callable[[float], None] | None = None) -> Seams:
+    """Seams that part `mesh` into disks within `limits`, without flips or overlap.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        Manifold, consistently wound; closed or open, any genus, any number of components.
+    limits : Limits
+    neck : float, mm
+        Pieces are not joined across less than this.
+    progress : callable, optional
+        Called with the part that is done, 0 to 1.
+
+    Returns
+    -------
+    Seams
+    """
+    aim = replace(limits, mean=4 + _AIM * (limits.mean - 4))
+    small = coarsen(mesh, _COARSE_FACES)
+    seams = _search(small, aim, limits, neck)
+    if small is not mesh:
+        cut = transfer(small, seams.cut, mesh)
+        _, label = mesh.topology.face_components(cut)
+        merged = merge_small(mesh, label, _SCRAP * mesh.area)
+        # Within a piece the seams that part nothing (darts) stay; between pieces only the borders do.
+        EF = mesh.topology.EF
+        inside = (EF[:, 1] >= 0) & (label[EF[:, 0]] == label[EF[:, 1]])
+        cut = (cut & inside) | borders(mesh, merged)
+        seams = Seams(*refine_seams(mesh, cut, limits, seam_weights(mesh), progress=progress))
+    return seams
+
+
+def _search(mesh: Mesh, aim: Limits, limits: Limits, neck: float) -> Seams:
+    weight = seam_weights(mesh)
+    starts = [np.zeros(len(mesh.topology.E), dtype=bool)]
+    creases = crease_seams(mesh)
+    if creases.any():
+        starts.append(creases)
+    found = []
+    for start in starts:
+        cut, pieces = refine_seams(mesh, start, aim, weight)
+        cut, pieces = glue_pieces(mesh, cut, pieces, aim, neck=neck, excess=_GLUE_EXCESS * (limits.mean - 4))
+        found.append(Seams(cut, pieces))
+    return min(found, key=lambda s: _cost(mesh, s))
+
+
+def _cost(mesh: Mesh, seams: Seams) -> float:
+    """Pieces, seam length and stretch in one number: 0.01 of mean d weighs as much as two pieces or one root of the area in seam."""
+    areas = np.array([mesh.face_areas[piece.faces].sum() for piece, _ in seams.pieces])
+    mean = float(np.average([v.distortion.mean for _, v in seams.pieces], weights=areas))
+    return len(seams.pieces) / 2 + seam_length(mesh, seams.cut) / np.sqrt(mesh.area) + 100 * (mean - 4)

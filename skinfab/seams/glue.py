@@ -1,0 +1,121 @@
+"""Join pieces again along whole borders wherever the joined piece is still good."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from skinfab.flatten.laplacian import intrinsic
+from skinfab.mesh.model import Mesh
+from skinfab.seams.cut import open_pieces
+from skinfab.seams.judge import Limits, judge
+from skinfab.seams.refine import Judged
+
+BoolArray = NDArray[np.bool_]
+IntArray = NDArray[np.int64]
+
+#: A border is not glued past a vertex whose angle defect is larger (rad): the cone there could not lie flat.
+_CONE = 0.3
+
+
+def glue_pieces(
+    mesh: Mesh, cut: BoolArray, pieces: list[Judged], limits: Limits, *, neck: float, excess: float
+) -> tuple[BoolArray, list[Judged]]:
+    """Glue neighbours, the longest border first, as long as the result keeps to `limits`.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    cut : (e,) bool
+    pieces : list of (OpenPiece, Verdict)
+        All of them.
+    limits : Limits
+    neck : float, mm
+        A border shorter than this is not glued: what hangs on it would tear off.
+    excess : float
+        By how much a glued piece's mean d may be above the area-weighted mean of its two parts.
+
+    Returns
+    -------
+    cut, pieces
+    """
+    cut = cut.copy()
+    owner = np.empty(len(mesh.F), dtype=np.int64)
+    judged = dict(enumerate(pieces))
+    for k, (piece, _) in judged.items():
+        owner[piece.faces] = k
+    refused: set[tuple[int, int, int]] = set()
+    blunt = ~_is_cone(mesh)
+    fresh = len(judged)
+    while True:
+        chain = _longest_chain(mesh, cut, owner, blunt, refused, neck)
+        if chain is None:
+            break
+        (a, b), edges = chain
+        trial = cut.copy()
+        trial[edges] = False
+        faces = np.concatenate([judged[a][0].faces, judged[b][0].faces])
+        (piece,) = open_pieces(mesh, trial, faces=faces)
+        verdict = judge(mesh, piece, limits) if piece.is_disk else None
+        if verdict is None or not verdict.accepted or verdict.distortion.mean > _mean(mesh, judged[a], judged[b]) + excess:
+            refused.add((a, b, int(edges.min())))
+            continue
+        cut = trial
+        judged[fresh] = (piece, verdict)
+        owner[faces] = fresh
+        del judged[a], judged[b]
+        fresh += 1
+    return cut, sorted(judged.values(), key=lambda item: int(item[0].faces[0]))
+
+
+def _mean(mesh: Mesh, *parts: Judged) -> float:
+    areas = [float(mesh.face_areas[piece.faces].sum()) for piece, _ in parts]
+    return float(np.average([verdict.distortion.mean for _, verdict in parts], weights=areas))
+
+
+def _is_cone(mesh: Mesh) -> BoolArray:
+    """(n,) vertices so sharp that gluing past one would close a cone."""
+    defect = 2 * np.pi - intrinsic(mesh.V, mesh.F).angle_sum
+    return np.abs(defect) > _CONE
+
+
+def _longest_chain(
+    mesh: Mesh, cut: BoolArray, owner: IntArray, blunt: BoolArray, refused: set[tuple[int, int, int]], neck: float
+) -> tuple[tuple[int, int], IntArray] | None:
+    """The pair of pieces with the longest unbroken common border, and its edges."""
+    topology = mesh.topology
+    border = np.flatnonzero(cut & (topology.EF[:, 1] >= 0))
+    pair = np.sort(owner[topology.EF[border]], axis=1)
+    apart = pair[:, 0] != pair[:, 1]
+    border, pair = border[apart], pair[apart]
+    if not len(border):
+        return None
+    run = _runs(topology.E[border], pair, blunt)
+    length = np.bincount(run, mesh.edge_lengths[border])
+    for k in np.argsort(-length.round(9), kind="stable"):
+        if length[k] < neck:
+            break
+        edges = border[run == k]
+        a, b = pair[np.argmax(run == k)].tolist()
+        if (a, b, int(edges.min())) not in refused:
+            return (a, b), edges
+    return None
+
+
+def _runs(E: IntArray, pair: IntArray, blunt: BoolArray) -> IntArray:
+    """Group border edges: two belong together when they meet at a blunt vertex and part the same two pieces."""
+    # A vertex counts once for every pair of pieces, so that runs of different pairs do not join.
+    pair_id = np.unique(pair, axis=0, return_inverse=True)[1].reshape(-1)
+    keys = pair_id[:, None] * (int(E.max()) + 1) + E
+    nodes, node = np.unique(keys, return_inverse=True)
+    node = node.reshape(-1, 2)
+    open_end = ~blunt[E]
+    edge = np.arange(len(E))
+    # Bipartite: edges on one side, blunt vertices on the other.
+    rows = np.concatenate([edge[~open_end[:, s]] for s in (0, 1)])
+    columns = np.concatenate([len(E) + node[~open_end[:, s], s] for s in (0, 1)])
+    size = len(E) + len(nodes)
+    _, label = connected_components(coo_array((np.ones(len(rows), dtype=np.int8), (rows, columns)), shape=(size, size)), directed=False)
+    return np.unique(label[: len(E)], return_inverse=True)[1]

@@ -1,0 +1,70 @@
+"""Is a piece good? Flatten it and hold it against the limits."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from skinfab.flatten.disk import flatten_isometric
+from skinfab.flatten.distortion import Distortion, measure
+from skinfab.flatten.orient import orient
+from skinfab.mesh.model import Mesh
+from skinfab.seams.cut import OpenPiece
+from skinfab.tolerances import OVERLAP_FRACTION
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What a piece must keep to.
+
+    Parameters
+    ----------
+    mean : float
+        Its mean d at most.
+    size : (float, float), mm
+        Width and height of the bed, less the mould's walls; either way round.
+    """
+
+    mean: float = 4.05
+    size: tuple[float, float] = (np.inf, np.inf)
+
+
+@dataclass(frozen=True, eq=False)
+class Verdict:
+    """A flattened piece and what is wrong with it.
+
+    Parameters
+    ----------
+    UV : (p, 2) float64, mm
+        In the piece frame.
+    distortion : Distortion
+    too_distorted, overlaps, too_large : bool
+    """
+
+    UV: NDArray[np.float64]
+    distortion: Distortion
+    too_distorted: bool
+    overlaps: bool
+    too_large: bool
+
+    @property
+    def accepted(self) -> bool:
+        return not (self.too_distorted or self.overlaps or self.too_large)
+
+
+def judge(mesh: Mesh, piece: OpenPiece, limits: Limits, *, max_steps: int = 60) -> Verdict:
+    """Flatten a disk and hold it against `limits`."""
+    V = mesh.V[piece.vertices]
+    uv = orient(flatten_isometric(V, piece.F, topology=piece.topology, max_steps=max_steps))
+    distortion = measure(V, piece.F, uv, topology=piece.topology)
+    area = float(mesh.face_areas[piece.faces].sum())
+    (w, h), (W, H) = np.ptp(uv, axis=0), sorted(limits.size, reverse=True)
+    return Verdict(
+        UV=uv,
+        distortion=distortion,
+        too_distorted=not distortion.mean <= limits.mean or distortion.flipped > 0,
+        overlaps=not distortion.overlap_mm2 <= OVERLAP_FRACTION * area,
+        too_large=bool(w > W or h > H),
+    )

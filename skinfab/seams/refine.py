@@ -1,0 +1,89 @@
+"""Cut until every piece is good: open to a disk, relieve by darts, part what overlaps or is too large."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from skinfab.mesh.model import Mesh
+from skinfab.seams.cut import OpenPiece, mesh_edges, open_pieces
+from skinfab.seams.darts import grow_dart
+from skinfab.seams.disk import cut_to_disk
+from skinfab.seams.judge import Limits, Verdict, judge
+from skinfab.seams.split import farthest_faces, overlapping_faces, split
+
+BoolArray = NDArray[np.bool_]
+
+#: A piece that this many darts did not bring under the bound is parted instead.
+_MOST_DARTS = 16
+
+Judged = tuple[OpenPiece, Verdict]
+
+
+def refine_seams(
+    mesh: Mesh,
+    cut: BoolArray,
+    limits: Limits,
+    weight: NDArray[np.float64],
+    *,
+    progress: Callable[[float], None] | None = None,
+) -> tuple[BoolArray, list[Judged]]:
+    """Add seams to `cut` until every piece is a disk that keeps to `limits`.
+
+    It ends: each round cuts at least one more edge of a piece that failed, and single triangles are good.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        Manifold, consistently wound.
+    cut : (e,) bool
+    limits : Limits
+    weight : (e,) float
+        Cost of cutting each edge.
+    progress : callable, optional
+        Called with the part of the area that is done.
+
+    Returns
+    -------
+    cut : (e,) bool
+    pieces : list of (OpenPiece, Verdict)
+        By first face.
+    """
+    cut = cut.copy()
+    todo = [(piece, 0) for piece in open_pieces(mesh, cut)]
+    done: list[Judged] = []
+    finished_area = 0.0
+    while todo:
+        piece, darts = todo.pop()
+        if not piece.is_disk:
+            topology = piece.topology
+            edge_weight = weight[mesh_edges(mesh, piece, np.arange(len(topology.E)))]
+            opened = mesh_edges(mesh, piece, cut_to_disk(topology, edge_weight, len(piece.vertices)))
+        else:
+            verdict = judge(mesh, piece, limits)
+            if verdict.accepted:
+                done.append((piece, verdict))
+                finished_area += float(mesh.face_areas[piece.faces].sum())
+                if progress:
+                    progress(finished_area / mesh.area)
+                continue
+            opened, darts = _mend(mesh, piece, verdict, weight, darts)
+        cut[opened] = True
+        parts = open_pieces(mesh, cut, faces=piece.faces)
+        todo += [(part, darts if len(parts) == 1 else 0) for part in parts]
+    return cut, sorted(done, key=lambda item: int(item[0].faces[0]))
+
+
+def _mend(mesh: Mesh, piece: OpenPiece, verdict: Verdict, weight: NDArray[np.float64], darts: int) -> tuple[NDArray[np.int64], int]:
+    """Edges to open next, and how many darts the piece then has."""
+    if verdict.too_distorted and not verdict.too_large and darts < _MOST_DARTS:
+        dart = grow_dart(mesh, piece, verdict.distortion.d, weight)
+        if len(dart):
+            return dart, darts + 1
+    if verdict.overlaps and not verdict.too_distorted:
+        ends = overlapping_faces(mesh, piece, verdict.UV)
+    else:
+        ends = farthest_faces(piece, verdict.UV)
+    return split(mesh, piece, ends, weight), 0
