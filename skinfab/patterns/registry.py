@@ -1,0 +1,69 @@
+"""The patterns there are, by kind; a pattern from a name and a table of numbers, and back."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Mapping
+from dataclasses import MISSING, fields
+from typing import Any
+
+from skinfab.errors import InputError
+from skinfab.patterns.base import Pattern
+from skinfab.patterns.contact_spiral import ContactSpiral
+from skinfab.patterns.strain_lines import StrainLines
+
+#: Every kind of pattern; add a new one here and nowhere else.
+PATTERNS: dict[str, type[Pattern]] = {cls.kind: cls for cls in (ContactSpiral, StrainLines)}
+
+
+def make_pattern(kind: str, params: Mapping[str, Any]) -> Pattern:
+    """The pattern of that kind with those parameters.
+
+    Parameters
+    ----------
+    kind : str
+        A key of `PATTERNS`.
+    params : mapping of str to number
+        By the pattern's own parameter names; `bead`, `gap` and `pad` are known to all of them.
+
+    Raises
+    ------
+    InputError
+        No such kind, or a parameter missing, misspelt or not a number.
+    PatternError
+        A parameter breaks a bound.
+
+    Examples
+    --------
+    >>> make_pattern("strain-lines", {"l1": 53, "l2": 43, "b": 6}).lines
+    4
+    """
+    if kind not in PATTERNS:
+        raise InputError(f"no pattern of kind {kind!r}{_suggest(kind, PATTERNS)}; there are {', '.join(sorted(PATTERNS))}")
+    known = {f.name: f for f in fields(PATTERNS[kind])}
+    for name in params:
+        if name not in known:
+            raise InputError(f"{kind}: unknown parameter {name!r}{_suggest(name, known)}; it knows {', '.join(sorted(known))}")
+    missing = [name for name, f in known.items() if f.default is MISSING and name not in params]
+    if missing:
+        raise InputError(
+            f"{kind}: parameter {missing[0]!r} is missing; it needs {', '.join(n for n, f in known.items() if f.default is MISSING)}"
+        )
+    return PATTERNS[kind](**params)
+
+
+def parameters(pattern: Pattern) -> dict[str, float | int]:
+    """Every parameter of a pattern by name, as `make_pattern` takes them.
+
+    Examples
+    --------
+    >>> spiral = make_pattern("contact-spiral", {"n": 3, "x": 1.7, "b": 1.5, "l": 3, "s": 15})
+    >>> make_pattern(spiral.kind, parameters(spiral)) == spiral
+    True
+    """
+    return {f.name: getattr(pattern, f.name) for f in fields(pattern)}
+
+
+def _suggest(name: str, known: Mapping[str, Any]) -> str:
+    near = difflib.get_close_matches(str(name), list(known), n=1, cutoff=0.5)
+    return f" (did you mean {near[0]!r}?)" if near else ""
