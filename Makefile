@@ -1,0 +1,27 @@
+# Two commands do everything, their own set-up included: `make demo` and `make test`.
+.PHONY: demo test setup lint lock pictures
+
+PYTHON = .venv/bin/python
+
+demo: setup
+	.venv/bin/skinfab make meshes/robot_finger.obj -o demo_out
+	@echo
+	@echo "Results are in demo_out/: open demo_out/report.html in a browser; G-code is in demo_out/gcode/, moulds in demo_out/mould/."
+
+test: lint
+	$(PYTHON) -m pytest -q -W error -n 2 --doctest-modules skinfab gcode tests
+
+lint: setup
+	$(PYTHON) -m ruff check .
+	$(PYTHON) -m ruff format --check .
+	$(PYTHON) -m mypy
+
+setup:
+	@tools/setup.sh
+
+lock:
+	$(PYTHON) tools/lock.py
+
+pictures: demo
+	@mkdir -p docs/pictures
+	cp demo_out/preview.png docs/pictures/robot_finger.png
