@@ -1,0 +1,102 @@
+"""The flat skin as DXF: millimetres, one layer a role, arcs as bulges."""
+
+from __future__ import annotations
+
+import io
+import math
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path as FilePath
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from skinfab.drawings.seam_sides import SeamSide, seam_sides
+from skinfab.drawings.sheet import sheet_offsets
+from skinfab.drawings.strokes import NOTCH_MM, TEXT_MM, name_place, pad_paths, short_arcs
+from skinfab.files import atomic_write
+from skinfab.paths import Arc, Path
+from skinfab.skin import Skin
+
+#: Layer and its AutoCAD colour.
+LAYERS = {"OUTLINE": 7, "SEAM": 1, "DART": 30, "BORDER": 8, "NOTCH": 1, "CONDUCTOR": 5, "PAD": 4, "LABEL": 3}
+
+
+def write_dxf(skin: Skin, path: str | FilePath) -> None:
+    """Draw the whole skin on one sheet, 1:1, for a cutter or a CAD program.
+
+    A sensor's conductor is one polyline of lines and bulges (exact arcs) on layer CONDUCTOR, as wide as its
+    bead; the pads are on PAD; OUTLINE has one closed polyline a piece; SEAM, DART and BORDER have the same
+    edges by what they meet, with notches and labels. The same skin gives the same bytes.
+
+    Parameters
+    ----------
+    skin : Skin
+    path : path
+
+    Raises
+    ------
+    InputError
+        The file cannot be written.
+    """
+    import ezdxf
+    from ezdxf import units
+
+    with _fixed_dates():
+        drawing = ezdxf.new("R2010", units=units.MM)
+        for name, colour in LAYERS.items():
+            drawing.layers.add(name, color=colour)
+        space = drawing.modelspace()
+        offsets = sheet_offsets(skin.pieces)
+        sides = seam_sides(skin.pieces)
+        for k, (piece, offset) in enumerate(zip(skin.pieces, offsets, strict=True)):
+            space.add_lwpolyline((piece.outline + offset).tolist(), format="xy", close=True, dxfattribs={"layer": "OUTLINE"})
+            for side in sides:
+                if side.piece == k:
+                    _draw_side(space, side, offset)
+            _label(space, name_place(piece) + offset, piece.id)
+            for sensor in skin.sensors_on(piece.id):
+                _stroke(space, sensor.path, offset, "CONDUCTOR", sensor.pattern.bead)
+                for pad in pad_paths(sensor):
+                    _stroke(space, pad, offset, "PAD", sensor.pattern.bead)
+                _label(space, sensor.path.bbox.mean(axis=0) + offset, sensor.id)
+        text = io.StringIO()
+        drawing.write(text)
+    atomic_write(path, text.getvalue())
+
+
+def _stroke(space: Any, path: Path, offset: NDArray[np.float64], layer: str, bead: float) -> None:
+    # A bulge is the tangent of a quarter of the sweep: a whole turn has none, so no arc is over half a turn.
+    segments = short_arcs(path, longest=math.pi)
+    rows = [(*(s.start + offset).tolist(), math.tan(s.sweep / 4) if isinstance(s, Arc) else 0.0) for s in segments]
+    rows.append((*(path.end + offset).tolist(), 0.0))
+    space.add_lwpolyline(rows, format="xyb", dxfattribs={"layer": layer, "const_width": bead})
+
+
+def _draw_side(space: Any, side: SeamSide, offset: NDArray[np.float64]) -> None:
+    space.add_lwpolyline((side.points + offset).tolist(), format="xy", dxfattribs={"layer": side.kind.upper()})
+    if side.label:
+        tip = side.notch + NOTCH_MM * side.inward
+        space.add_line(tuple(side.notch + offset), tuple(tip + offset), dxfattribs={"layer": "NOTCH"})
+        _label(space, tip + TEXT_MM * 0.6 * side.inward + offset, side.label)
+
+
+def _label(space: Any, at: NDArray[np.float64], text: str) -> None:
+    from ezdxf.enums import TextEntityAlignment
+
+    entity = space.add_text(text, height=TEXT_MM, dxfattribs={"layer": "LABEL"})
+    entity.set_placement((float(at[0]), float(at[1])), align=TextEntityAlignment.MIDDLE_CENTER)
+
+
+@contextmanager
+def _fixed_dates() -> Iterator[None]:
+    """Let ezdxf write constant dates and GUIDs; it has no such argument, only this option."""
+    from ezdxf import options
+
+    before = options.write_fixed_meta_data_for_testing
+    options.write_fixed_meta_data_for_testing = True
+    try:
+        yield
+    finally:
+        options.write_fixed_meta_data_for_testing = before
