@@ -24,7 +24,7 @@ CAVITY_FRACTION = 0.005
 PREVIEW_CHORD_MM = 0.02
 
 #: Least slack of a triangle inequality, as a fraction of the mean edge: needles below it are mollified.
-MOLLIFY = 1e-6
+MOLLIFY = 1e-9
 
 #: Newton on d stops when the next step promises less than this fraction of what is left above 4.
 NEWTON_DECREASE = 1e-4
@@ -50,3 +50,15 @@ PARAMETER_STEP_MM = 0.001
 #: An arc whose ends lie closer than this is printed as a line: 100 cells of the 0.0001 mm output grid, below which
 #: rounding could turn its end behind its start and so make a full circle of it.
 SHORT_ARC_MM = 0.01
+
+#: A point this far (barycentric) outside a flat triangle still lies in it: rounding must open no gap between neighbours.
+BARYCENTRIC = 1e-9
+
+#: Clearances may fall short by this much before a sensor is refused: rounding, a thousandth of a printer's step.
+CLEARANCE_MM = 1e-6
+
+#: Interior edges sharper than this are creases of the object: a contact sensor bent over one would break or read as touched.
+CREASE_RAD = 0.5235987755982988  # 30 degrees
+
+#: Creases shorter than this altogether are noise of a scan; the smallest sensor is as wide.
+CREASE_LENGTH_MM = 10.0

@@ -1,0 +1,178 @@
+"""Judge a program or any G-code text against one printer, before ink is laid.
+
+A file of this project and a foreign one stand under the same rules; a finding says where, what, and what to change.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from gcode.check_height import height_findings
+from gcode.geometry import Curve, Straight
+from gcode.marlin import emit
+from gcode.printer import Printer
+from gcode.program import E_DECIMALS, F_DECIMALS, XY_DECIMALS, Comment, Prime, Program, Retract
+from gcode.trace import Finding, Move, Trace, trace
+from skinfab.tolerances import ARC_RADIUS_MM
+
+#: Half a step of each emitted word: what rounding alone may add.
+HALF_XY, HALF_E, HALF_F = 0.5 * 10**-XY_DECIMALS, 0.5 * 10**-E_DECIMALS, 0.5 * 10**-F_DECIMALS / 60
+
+
+def check_program(program: Program, printer: Printer) -> tuple[Finding, ...]:
+    """Findings about a program, as the text it would become; line numbers are that text's.
+
+    Beyond `check_text`, prime and retract must cancel exactly within each pattern.
+    """
+    return (*_unbalanced(program), *check_text(emit(program, printer), printer))
+
+
+def check_text(text: str, printer: Printer) -> tuple[Finding, ...]:
+    """Findings about a G-code text, in the order of its lines; empty where it may be printed.
+
+    Raises
+    ------
+    InputError
+        A line that cannot be read or followed.
+
+    Examples
+    --------
+    >>> from gcode.printer import load_printer
+    >>> text = "G90\\nM83\\nM302 P1\\nG0 X340 Y10 F600\\nG0 Z1.6 F300\\nG3 X340 Y30 I0 J10 E100 F200"
+    >>> for finding in check_text(text, load_printer()):
+    ...     print(finding)
+    >>> for finding in check_text(text.replace("X340", "X345"), load_printer()):
+    ...     print(finding)
+    line 6: it reaches X355.0000, the bed ends at X350.0000; move the pattern inward or choose a larger printer
+    """
+    judged = trace(text)
+    findings = [*judged.faults, *_homing(judged, printer), *height_findings(judged, printer), *_retracts(judged)]
+    for move in judged.moves:
+        for what, remedy in _faults_of(move, printer):
+            findings.append(Finding(move.line, what, remedy, move.pattern))
+    return tuple(sorted(findings, key=lambda f: f.line))
+
+
+def _faults_of(move: Move, printer: Printer) -> Iterator[tuple[str, str]]:
+    yield from _bounds(move, printer)
+    yield from _arc(move, printer)
+    yield from _ink(move, printer)
+    yield from _speed(move, printer)
+
+
+def _bounds(move: Move, printer: Printer) -> Iterator[tuple[str, str]]:
+    shape = move.shape
+    low, high = shape.bbox if shape else (move.end[:2], move.end[:2])
+    bed = printer.bed
+    for k, axis in enumerate("XYZ"):
+        start, end = (bed.origin[k], bed.origin[k] + bed.size[k]) if k < 2 else (0.0, bed.height)
+        least, most = (low[k], high[k]) if k < 2 else (move.end[2], move.end[2])
+        remedy = "move the pattern inward or choose a larger printer" if k < 2 else "change the heights in the printer profile"
+        name = "bed" if k < 2 else "machine"
+        if most is not None and most > end + HALF_XY:
+            yield f"it reaches {axis}{most:.4f}, the {name} ends at {axis}{end:.4f}", remedy
+        if least is not None and least < start - HALF_XY:
+            yield f"it reaches {axis}{least:.4f}, the {name} begins at {axis}{start:.4f}", remedy
+
+
+def _arc(move: Move, printer: Printer) -> Iterator[tuple[str, str]]:
+    shape = move.shape
+    if not isinstance(shape, Curve):
+        return
+    if not printer.arcs:
+        yield "this printer draws no arcs", "emit with --arcs lines"
+    if shape.radius_error > ARC_RADIUS_MM:
+        r = shape.radius
+        yield (
+            f"its end lies {shape.radius_error:.4f} mm off the circle of radius {r:.4f} it starts on, the head would jump there",
+            f"move the end or the centre until both radii agree within {ARC_RADIUS_MM} mm",
+        )
+    if shape.start == shape.end:
+        yield "a full circle in one command", "split it into two half circles"
+
+
+def _ink(move: Move, printer: Printer) -> Iterator[tuple[str, str]]:
+    if abs(move.e) > printer.pump.max_e + HALF_E:
+        yield (
+            f"E{move.e:.5f} is beyond the firmware's {printer.pump.max_e:g} mm a command, the ink is dropped in silence",
+            "split the move, or raise max_e and EXTRUDE_MAXLENGTH alike",
+        )
+    if move.e < 0 and move.is_planar:
+        yield f"E{move.e:.5f} is negative while the head moves: the pump runs backwards", "make E positive; reverse the motor in the firmware"
+    if move.e > 0 and move.is_planar and move.shape is None:
+        yield "it extrudes from an unknown place", "move to the start of the ink with G0 X Y first"
+
+
+def _speed(move: Move, printer: Printer) -> Iterator[tuple[str, str]]:
+    if move.speed is None:
+        yield "no speed F was given yet", "give F, in mm/min, on the first move"
+        return
+    motion, pump, shape = printer.motion, printer.pump, move.shape
+    if move.is_planar and move.speed > motion.max_speed + HALF_F:
+        yield _too_fast(move.speed, motion.max_speed, "the printer's own limit")
+    if not move.is_planar and move.e and abs(move.speed) > pump.max_e_speed + HALF_F:
+        yield _too_fast(move.speed, pump.max_e_speed, "the E axis")
+    if isinstance(shape, Curve) and move.speed > (limit := math.sqrt(motion.acceleration * shape.radius)) + HALF_F:
+        yield _too_fast(move.speed, limit, f"v^2 <= a R at R = {shape.radius:.3f} mm")
+    if shape is None or move.e <= 0:
+        return
+    # E is rounded to its own grid; over a short move that alone changes the flow a little.
+    most, least = move.e + 2 * HALF_E, move.e - 2 * HALF_E
+    per_second = move.speed / shape.length
+    if (rate := least * per_second) > pump.max_e_speed * (1 + HALF_F):
+        yield _too_fast(move.speed, move.speed * pump.max_e_speed / rate, "the E axis")
+    flow = move.e / pump.e_per_mm3 * per_second
+    if least / pump.e_per_mm3 * per_second > pump.flow_max * (1 + HALF_F):
+        yield _too_fast(move.speed, move.speed * pump.flow_max / flow, f"a flow of {pump.flow_max:g} mm^3/s (it is {flow:.3f})")
+    # A speed is rounded down to its grid, so the least flow has one step of F to spare.
+    if most / pump.e_per_mm3 * (move.speed + 2 * HALF_F) / shape.length < pump.flow_min:
+        yield (
+            f"its flow is {flow:.3f} mm^3/s, the pump is steady from {pump.flow_min:g}",
+            f"raise F to {60 * move.speed * pump.flow_min / flow:.0f}" if isinstance(shape, Straight) else "raise F or the arc's radius",
+        )
+
+
+def _too_fast(speed: float, limit: float, why: str) -> tuple[str, str]:
+    return f"F{speed * 60:.1f} is above F{limit * 60:.1f}, the limit of {why}", f"lower F to {math.floor(limit * 600) / 10:.1f}"
+
+
+def _homing(judged: Trace, printer: Printer) -> Iterator[Finding]:
+    if printer.home == "xyz":
+        return
+    for line in judged.homes_z:
+        yield Finding(line, "it homes Z: the probe dips into the wet mould", "home with G28 X Y and set Z = 0 by hand")
+
+
+def _retracts(judged: Trace) -> Iterator[Finding]:
+    """Each pattern must start with the nozzle as full as the one before it did."""
+    balance, first, last_change, laid = 0.0, None, 0, False
+    for move in judged.moves:
+        if move.e and not move.is_planar:
+            balance, last_change, laid = balance + move.e, move.line, False
+        elif move.e > 0 and not laid:
+            laid = True
+            first = balance if first is None else first
+            if abs(balance - first) > 2 * HALF_E:
+                change = "more" if balance > first else "less"
+                yield Finding(
+                    last_change,
+                    f"the nozzle then holds {abs(balance - first):.5f} mm of E {change} than at the first pattern's start",
+                    "prime as much before a pattern as was retracted after the last",
+                    move.pattern,
+                )
+                first = balance
+
+
+def _unbalanced(program: Program) -> Iterator[Finding]:
+    """Prime less retract is zero from each ``pattern`` comment to the next."""
+    pattern, balance = "", 0.0
+    for step in (*program.steps, Comment("pattern ")):
+        if isinstance(step, Prime) and pattern:
+            balance += step.volume
+        elif isinstance(step, Retract) and pattern:
+            balance -= step.volume
+        elif isinstance(step, Comment) and step.text.startswith("pattern"):
+            if pattern and balance:
+                yield Finding(0, f"prime less retract is {balance:.5f} mm^3 at its end, not zero", "make prime and retract equal", pattern)
+            pattern, balance = step.text.removeprefix("pattern").strip(), 0.0

@@ -1,0 +1,109 @@
+"""Ink is laid at the print height, the head travels above the walls, and nothing is dragged through wet ink."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from gcode.clearance import chords, distance
+from gcode.geometry import Shape, Straight
+from gcode.printer import Printer
+from gcode.program import XY_DECIMALS
+from gcode.trace import Finding, Move, Trace
+from skinfab.tolerances import PREVIEW_CHORD_MM
+
+STEP_XY = 10**-XY_DECIMALS
+
+
+def height_findings(judged: Trace, printer: Printer) -> Iterator[Finding]:
+    """Findings about heights, in the order of the moves.
+
+    A low travel is accepted as an overrun only: straight into or out of an extrusion, no longer than the profile's
+    own, and clear of all ink but the bead it leaves.
+    """
+    laid: list[Shape] = []
+    for k, move in enumerate(judged.moves):
+        shape = move.shape
+        if shape is None:
+            continue
+        if move.e > 0:
+            yield from _print_height(move, printer)
+            laid.append(shape)
+        elif (low := _lowest(move)) is not None and low < printer.heights.travel - STEP_XY:
+            before = judged.moves[k - 1] if k else None
+            after = judged.moves[k + 1] if k + 1 < len(judged.moves) else None
+            yield from _low_travel(move, low, _last_inked(before, judged, k), after, laid, printer)
+
+
+def _print_height(move: Move, printer: Printer) -> Iterator[Finding]:
+    h = printer.heights
+    remedy = f"print between {h.print_min:g} and {h.print_max:g} mm, or change the heights in the printer profile"
+    if move.start[2] is None or move.end[2] is None:
+        yield Finding(move.line, "it extrudes at an unknown height", "set Z before the first ink", move.pattern)
+    elif min(move.start[2], move.end[2]) < h.print_min - STEP_XY:
+        yield Finding(move.line, f"it extrudes at Z{min(move.start[2], move.end[2]):.4f}, below the least print height", remedy, move.pattern)
+    elif max(move.start[2], move.end[2]) > h.print_max + STEP_XY:
+        yield Finding(move.line, f"it extrudes at Z{max(move.start[2], move.end[2]):.4f}, above the greatest print height", remedy, move.pattern)
+
+
+def _lowest(move: Move) -> float | None:
+    heights = [z for z in (move.start[2], move.end[2]) if z is not None]
+    return min(heights) if heights else None
+
+
+def _last_inked(before: Move | None, judged: Trace, k: int) -> Move | None:
+    """The extrusion a travel leaves from, past a retract at standstill."""
+    while before is not None and before.e and not before.is_planar:
+        k -= 1
+        before = judged.moves[k - 1] if k else None
+    return before if before is not None and before.e > 0 else None
+
+
+def _low_travel(move: Move, low: float, before: Move | None, after: Move | None, laid: list[Shape], printer: Printer) -> Iterator[Finding]:
+    shape = move.shape
+    process = printer.process
+    allowed = process.overrun_end if before is not None else process.overrun_start if _enters(after) else 0.0
+    if shape is None:
+        return
+    remedy = f"lift to Z{printer.heights.travel:g} before moving on"
+    if shape.length > allowed + 2 * STEP_XY:
+        yield Finding(move.line, f"it travels {shape.length:.3f} mm at Z{low:.4f}, below the travel height", remedy, move.pattern)
+        return
+    if crosses_ink(shape, laid, bead_radius(before or after, printer), leaves=before is not None):
+        yield Finding(move.line, f"it drags the nozzle through wet ink at Z{low:.4f}", "shorten the overrun, or " + remedy, move.pattern)
+
+
+def _enters(after: Move | None) -> bool:
+    # Either the path begins here, or the prime at its start does.
+    return after is not None and after.e > 0
+
+
+def bead_radius(move: Move | None, printer: Printer) -> float:
+    """Half the width of a round bead of this extrusion, mm."""
+    if move is None or move.shape is None:
+        return 0.0
+    return math.sqrt(max(move.e, 0.0) / printer.pump.e_per_mm3 / move.shape.length / math.pi)
+
+
+def crosses_ink(run: Shape, laid: list[Shape], radius: float, *, leaves: bool) -> bool:
+    """Does a straight run come within a bead's `radius` (mm) of laid ink?
+
+    Where it `leaves` the end of that ink, its first part, one radius long, lies on the bead by necessity.
+    """
+    start = run.start
+    if leaves:
+        if run.length <= radius:
+            return False
+        start = run.point_at(radius / run.length)
+    # The chords may lie inside an arc by their tolerance, and places are rounded.
+    return distance((start, run.end), chords(laid)) < radius - PREVIEW_CHORD_MM - STEP_XY
+
+
+def free_length(start: tuple[float, float], direction: tuple[float, float], wanted: float, laid: list[Shape], radius: float, *, leaves: bool) -> float:
+    """The longest run from `start`, up to `wanted` mm, in tenths of it, that stays clear of `laid` ink."""
+    for tenths in range(10, 0, -1):
+        length = wanted * tenths / 10
+        run = Straight(start, (start[0] + direction[0] * length, start[1] + direction[1] * length))
+        if not crosses_ink(run, laid, radius, leaves=leaves):
+            return length
+    return 0.0

@@ -1,0 +1,51 @@
+"""Does a straight run of the nozzle keep away from what lies in its plane?"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from gcode.geometry import Curve, Shape
+from skinfab.tolerances import PREVIEW_CHORD_MM
+
+
+def chords(shapes: Sequence[Shape]) -> NDArray[np.float64]:
+    """Shapes as straight pieces, (n, 2, 2) mm; arcs leave theirs by at most ``tolerances.PREVIEW_CHORD_MM``."""
+    pieces = [part for s in shapes for part in (s.chords(PREVIEW_CHORD_MM) if isinstance(s, Curve) else (s,))]
+    return np.array([(p.start, p.end) for p in pieces]).reshape(-1, 2, 2)
+
+
+def distance(run: ArrayLike, pieces: NDArray[np.float64]) -> float:
+    """Least distance of one straight run, (2, 2) mm, from any of (n, 2, 2) mm; infinite where there is none.
+
+    Examples
+    --------
+    >>> distance([(0, 0), (2, 0)], np.array([[(1, 1), (1, 3)], [(5, -1), (5, 1)]]))
+    1.0
+    """
+    if not len(pieces):
+        return np.inf
+    a, b = np.asarray(run, dtype=float)
+    p, q = pieces[:, 0], pieces[:, 1]
+    if np.any(_cross(b - a, p - a) * _cross(b - a, q - a) < 0) and np.any(_crossing(a, b, p, q)):
+        return 0.0
+    # Two straight pieces that do not cross are closest at an end of one of them.
+    ends = [_to_piece(a, p, q), _to_piece(b, p, q), _to_piece(p, a, b), _to_piece(q, a, b)]
+    return float(np.min(ends))
+
+
+def _cross(u: NDArray[np.float64], v: NDArray[np.float64]) -> NDArray[np.float64]:
+    return u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0]
+
+
+def _crossing(a: NDArray[np.float64], b: NDArray[np.float64], p: NDArray[np.float64], q: NDArray[np.float64]) -> NDArray[np.bool_]:
+    return (_cross(b - a, p - a) * _cross(b - a, q - a) < 0) & (_cross(q - p, a - p) * _cross(q - p, b - p) < 0)
+
+
+def _to_piece(point: NDArray[np.float64], p: NDArray[np.float64], q: NDArray[np.float64]) -> NDArray[np.float64]:
+    along = q - p
+    square = np.sum(along**2, axis=-1)
+    t = np.clip(np.sum((point - p) * along, axis=-1) / np.where(square > 0, square, 1.0), 0, 1)
+    return np.linalg.norm(point - p - t[..., None] * along, axis=-1)

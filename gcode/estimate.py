@@ -1,0 +1,126 @@
+"""How long a program takes, how much ink it lays and where the head goes.
+
+Time follows the firmware's own planner: a trapezoid of velocity for each move, bounded at the joints by junction
+deviation (Jeon, "Improving Grbl: cornering algorithm", 2011, as Marlin has it) and over all moves by looking ahead.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from gcode.geometry import Curve
+from gcode.printer import Printer
+from gcode.program import Clean, Comment, Dwell, Extrude, Prime, Program, Retract, Travel
+
+
+@dataclass(frozen=True)
+class Summary:
+    """What the report says of one file: text lines, s, mm^3, ((x, y, z) low, high) of the motion in mm, number of arcs."""
+
+    lines: int
+    time_s: float
+    ink_mm3: float
+    bbox_mm: tuple[tuple[float, float, float], tuple[float, float, float]]
+    arcs: int
+
+
+@dataclass(frozen=True)
+class _Block:
+    """One move as the planner sees it; `into` and `out` are unit vectors in space."""
+
+    length: float
+    speed: float
+    into: tuple[float, float, float]
+    out: tuple[float, float, float]
+
+
+def summarise(program: Program, printer: Printer, *, lines: int) -> Summary:
+    """The summary of a program that was emitted as a text of `lines` lines."""
+    corners: list[tuple[float, float, float]] = []
+    x = y = z = None
+    for step in program.steps:
+        if isinstance(step, Travel):
+            x, y, z = (old if new is None else new for old, new in zip((x, y, z), (step.x, step.y, step.z), strict=True))
+            corners += [(x, y, z)] if x is not None and y is not None and z is not None else []
+        elif isinstance(step, Extrude):
+            corners += [(*corner, 0.0 if z is None else z) for corner in step.shape.bbox]
+            x, y = step.shape.end
+    box = np.array(corners or [(0.0, 0.0, 0.0)])
+    low, high = ((float(v[0]), float(v[1]), float(v[2])) for v in (box.min(axis=0), box.max(axis=0)))
+    arcs = sum(isinstance(s, Extrude) and isinstance(s.shape, Curve) for s in program.steps)
+    return Summary(lines, print_time(program, printer), program.ink, (low, high), arcs)
+
+
+def print_time(program: Program, printer: Printer) -> float:
+    """Time from the first step to the last, s; homing is left out.
+
+    Examples
+    --------
+    >>> from gcode.printer import load_printer
+    >>> program = Program("P1", (Travel(x=0.0, y=0.0, speed=1.0), Travel(x=100.0, speed=50.0), Dwell(2.0)))
+    >>> round(print_time(program, load_printer()), 3)  # 100 / 50 + 50 / 500 + 2
+    4.1
+    """
+    total = 0.0
+    run: list[_Block] = []
+    x: float | None = None
+    y: float | None = None
+    z: float | None = None
+    for step in program.steps:
+        if isinstance(step, Comment):
+            continue
+        if isinstance(step, Travel):
+            now = (x, y, z)
+            x, y, z = (old if new is None else new for old, new in zip(now, (step.x, step.y, step.z), strict=True))
+            moved = [0.0 if old is None or new is None else new - old for old, new in zip(now, (x, y, z), strict=True)]
+            if (length := math.hypot(*moved)) > 0:
+                unit = (moved[0] / length, moved[1] / length, moved[2] / length)
+                run.append(_Block(length, step.speed, unit, unit))
+        elif isinstance(step, Extrude):
+            into, out = step.shape.directions
+            run.append(_Block(step.shape.length, step.speed, (*into, 0.0), (*out, 0.0)))
+            x, y = step.shape.end
+        else:
+            # A command at standstill ends the run: the head stops before it and starts anew after it.
+            total += _run_time(run, printer)
+            run = []
+            if isinstance(step, (Dwell, Clean)):
+                total += step.seconds
+            elif isinstance(step, (Prime, Retract)):
+                e = step.volume * printer.pump.e_per_mm3
+                total += _trapezoid(e, step.rate * printer.pump.e_per_mm3, 0.0, 0.0, printer.motion.acceleration)
+    return total + _run_time(run, printer)
+
+
+def _run_time(run: list[_Block], printer: Printer) -> float:
+    """Time of moves without a stop between them, s, from rest to rest."""
+    if not run:
+        return 0.0
+    a = printer.motion.acceleration
+    joints = [0.0, *(_junction_speed(one, two, printer) for one, two in zip(run, run[1:], strict=False)), 0.0]
+    for k in range(len(run) - 1, -1, -1):  # slow down in time for what comes
+        joints[k] = min(joints[k], math.sqrt(joints[k + 1] ** 2 + 2 * a * run[k].length))
+    for k in range(len(run)):  # and speed up no faster than can be
+        joints[k + 1] = min(joints[k + 1], math.sqrt(joints[k] ** 2 + 2 * a * run[k].length))
+    return math.fsum(_trapezoid(b.length, b.speed, joints[k], joints[k + 1], a) for k, b in enumerate(run))
+
+
+def _junction_speed(one: _Block, two: _Block, printer: Printer) -> float:
+    cosine = -sum(u * v for u, v in zip(one.out, two.into, strict=True))
+    limit = min(one.speed, two.speed)
+    if cosine < -0.999999:
+        return limit  # straight on
+    half_sine = math.sqrt(max(0.5 * (1 - cosine), 0.0))
+    if half_sine >= 1.0:
+        return limit
+    return min(limit, math.sqrt(printer.motion.acceleration * printer.motion.junction_deviation * half_sine / (1 - half_sine)))
+
+
+def _trapezoid(length: float, speed: float, entry: float, leave: float, a: float) -> float:
+    """Time over `length` from `entry` to `leave`, at most at `speed`, with acceleration `a`, s."""
+    peak = min(speed, math.sqrt(a * length + (entry**2 + leave**2) / 2))
+    ramps = (2 * peak**2 - entry**2 - leave**2) / (2 * a)
+    return (2 * peak - entry - leave) / a + max(length - ramps, 0.0) / peak

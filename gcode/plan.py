@@ -1,0 +1,244 @@
+"""From sensors on a flat piece to the steps that print them."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from gcode.check_height import free_length
+from gcode.clearance import distance
+from gcode.geometry import Curve, Point, Shape, Straight, shape_of
+from gcode.printer import Printer
+from gcode.program import Clean, Comment, Dwell, Extrude, Prime, Program, Retract, Step, Travel, on_grid, quantised
+from skinfab.errors import InputError, RefusedError
+from skinfab.material import Material
+from skinfab.paths import Path
+from skinfab.pieces import Piece
+from skinfab.placement.sensor import Sensor
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What is printed on one piece.
+
+    Parameters
+    ----------
+    program : Program
+        Quantised, in machine coordinates.
+    offset : (x, y), mm
+        Added to the piece frame: `bed_offset`.
+    warnings : tuple of str
+        Where a speed was lowered or an overrun cut short, one sentence for each pattern and reason.
+    """
+
+    program: Program
+    offset: Point
+    warnings: tuple[str, ...]
+
+
+def bed_offset(piece: Piece, printer: Printer) -> Point:
+    """Machine coordinates of the piece frame's origin, mm: the piece's bounding box is centred on the bed.
+
+    Raises
+    ------
+    RefusedError
+        The piece is larger than the bed.
+    """
+    for k, axis in enumerate(("wide", "deep")):
+        if piece.size[k] > printer.bed.size[k]:
+            raise RefusedError(
+                f"piece {piece.id} is {piece.size[k]:.1f} mm {axis}, the bed of {printer.name} is {printer.bed.size[k]:g} mm; "
+                "cut the piece smaller or choose a larger printer"
+            )
+    low, high = piece.UV.min(axis=0), piece.UV.max(axis=0)
+    x, y = (printer.bed.origin[k] + printer.bed.size[k] / 2 - float(low[k] + high[k]) / 2 for k in range(2))
+    return on_grid(x), on_grid(y)
+
+
+def plan(piece: Piece, sensors: Sequence[Sensor], *, printer: Printer, material: Material) -> Plan:
+    """The program that prints all `sensors` of one piece.
+
+    Patterns are printed in the order of nearest neighbours, each from the nearer of its ends, travelling above the
+    mould's walls. Each is entered and left along its tangent, and ends with as much ink in the nozzle as it began.
+
+    Parameters
+    ----------
+    piece : Piece
+    sensors : sequence of Sensor
+        All on this piece.
+    printer : Printer
+    material : Material
+        Its bead's cross-section times the path's length is the volume laid.
+
+    Raises
+    ------
+    InputError
+        No sensor, or one of another piece.
+    RefusedError
+        The piece does not fit the bed.
+    """
+    if not sensors:
+        raise InputError(f"piece {piece.id} has no sensor; place one before making G-code")
+    for sensor in sensors:
+        if sensor.piece != piece.id:
+            raise InputError(f"sensor {sensor.id} lies on piece {sensor.piece}, not on {piece.id}")
+    offset = bed_offset(piece, printer)
+    paths = {s.id: s.printed_path.transformed(angle=0.0, shift=offset) for s in sensors}
+    planner = _Planner(printer, material, piece.outline + offset)
+    planner.begin()
+    for name, path in nearest_order(paths, start=(printer.bed.origin[0], printer.bed.origin[1])):
+        planner.pattern(name, path)
+    program = quantised(Program(piece.id, tuple(planner.steps)), e_per_mm3=printer.pump.e_per_mm3)
+    return Plan(program, offset, tuple(planner.warnings))
+
+
+def nearest_order(paths: dict[str, Path], *, start: Point) -> list[tuple[str, Path]]:
+    """The paths, each next one the nearest by either of its ends, turned to begin there; ties go by name.
+
+    Every first pattern is tried, and the order of the shortest travel is kept.
+    """
+
+    def from_first(first: str, flip: bool) -> tuple[float, list[tuple[str, Path]]]:
+        order = [(first, paths[first].reversed() if flip else paths[first])]
+        travel = math.dist(start, order[0][1].start)
+        left = sorted(paths.keys() - {first})
+        while left:
+            here = order[-1][1].end
+            away, name, turn = min((math.dist(here, paths[n].end if t else paths[n].start), n, t) for n in left for t in (False, True))
+            order.append((name, paths[name].reversed() if turn else paths[name]))
+            travel += away
+            left.remove(name)
+        return travel, order
+
+    tries = [from_first(name, flip) for name in sorted(paths) for flip in (False, True)]
+    return min(tries, key=lambda found: round(found[0], 6))[1]
+
+
+class _Planner:
+    """Appends the steps of pattern after pattern and remembers the ink that is laid."""
+
+    def __init__(self, printer: Printer, material: Material, outline: ArrayLike) -> None:
+        self.printer, self.material = printer, material
+        self.area = material.ink.bead_area_mm2
+        self.outline = _closed(outline)
+        self.laid: list[Shape] = []
+        self.steps: list[Step] = []
+        self.warnings: list[str] = []
+
+    def begin(self) -> None:
+        self._lift()
+        if (place := self.printer.cleaning) and place.initial_extrude:
+            self.steps.append(Comment("first ink, at the cleaning place"))
+            self._to_cleaning()
+            # In portions, for no command may ask for more E than the firmware accepts.
+            count = math.ceil(place.initial_extrude * self.printer.pump.e_per_mm3 / self.printer.pump.max_e)
+            self.steps += [self._prime(place.initial_extrude / count)] * count
+            self.steps.append(Clean(place.seconds))
+
+    def pattern(self, name: str, path: Path) -> None:
+        motion, process, pump = self.printer.motion, self.printer.process, self.printer.pump
+        shapes = [shape_of(s) for s in path.segments if s.length > 0]
+        (dx, dy), out = shapes[0].directions[0], shapes[-1].directions[1]
+        inked = self._run(name, "print-overrun", shapes[0].start, (-dx, -dy), process.print_overrun, leaves=False)
+        shapes = [*([Straight(inked, shapes[0].start)] if inked != shapes[0].start else []), *shapes]
+        entry = self._run(name, "start overrun", shapes[0].start, (-dx, -dy), process.overrun_start, leaves=False)
+        slow = motion.straight_speed
+        self.steps += [Comment(f"pattern {name}"), Travel(*entry, speed=motion.travel_speed), Travel(z=self.printer.heights.print, speed=motion.z_speed)]
+        if entry != shapes[0].start:
+            self.steps.append(Travel(*shapes[0].start, speed=slow))
+        if pump.prime:
+            self.steps.append(self._prime(pump.prime))
+        self._extrude(name, shapes)
+        if pump.retract:
+            self.steps.append(Retract(pump.retract, self._pump_rate()))
+        exit_ = self._run(name, "end overrun", shapes[-1].end, out, process.overrun_end, leaves=True)
+        if exit_ != shapes[-1].end:
+            self.steps.append(Travel(*exit_, speed=slow))
+        self._lift()
+        if process.pause:
+            self.steps.append(Dwell(process.pause))
+        if self.printer.cleaning:
+            self._to_cleaning()
+            self.steps.append(Clean(self.printer.cleaning.seconds))
+
+    def _lift(self) -> None:
+        self.steps.append(Travel(z=self.printer.heights.travel, speed=self.printer.motion.z_speed))
+
+    def _to_cleaning(self) -> None:
+        place, origin = self.printer.cleaning, self.printer.bed.origin
+        assert place is not None
+        self.steps.append(Travel(place.x + origin[0], place.y + origin[1], speed=self.printer.motion.travel_speed))
+
+    def _pump_rate(self) -> float:
+        pump = self.printer.pump
+        return min(pump.prime_rate, pump.max_e_speed / pump.e_per_mm3)
+
+    def _prime(self, volume: float) -> Prime:
+        return Prime(volume, self._pump_rate())
+
+    def _run(self, name: str, kind: str, at: Point, direction: Point, wanted: float, *, leaves: bool) -> Point:
+        """Where a run along the tangent ends: short of the skin's edge and of wet ink."""
+        if not wanted:
+            return at
+        radius = math.sqrt(self.area / math.pi)
+        length = free_length(at, direction, wanted, self.laid, radius, leaves=leaves)
+        for tenths in range(round(10 * length / wanted), -1, -1):
+            length = wanted * tenths / 10
+            end = (at[0] + direction[0] * length, at[1] + direction[1] * length)
+            if not length or distance((at, end), self.outline) >= radius:
+                break
+        if length < wanted * (1 - 1e-9):
+            self.warnings.append(f"{name}: {kind} cut from {wanted:g} to {length:.2g} mm, for the skin's edge or wet ink is near")
+        return end if length else at
+
+    def _extrude(self, name: str, shapes: Sequence[Shape]) -> None:
+        lowered: Counter[tuple[str, float, float]] = Counter()
+        for shape in shapes:
+            nominal = self.printer.motion.curve_speed if isinstance(shape, Curve) else self.printer.motion.straight_speed
+            speed, why = allowed_speed(shape, self.area, self.printer)
+            if speed < nominal:
+                lowered[why, nominal, round(speed, 3)] += 1
+            # No command may ask for more E than the firmware accepts.
+            count = max(math.ceil(shape.length * self.area * self.printer.pump.e_per_mm3 / self.printer.pump.max_e * (1 + 1e-9)), 1)
+            self.steps += [Extrude(part, self.area * part.length, speed) for part in shape.split(count)]
+            self.laid.append(shape)
+        for (why, nominal, speed), times in sorted(lowered.items()):
+            self.warnings.append(f"{name}: speed lowered from {nominal:.4g} to {speed:.4g} mm/s on {times} segment{'s' * (times > 1)} by {why}")
+
+
+def allowed_speed(shape: Shape, area: float, printer: Printer) -> tuple[float, str]:
+    """The profile's speed for a line or an arc, lowered to what flow, E axis and acceleration allow, and the reason.
+
+    Parameters
+    ----------
+    shape : Straight or Curve
+    area : float, mm^2
+        The bead's cross-section.
+    printer : Printer
+
+    Returns
+    -------
+    speed : float, mm/s
+    reason : str
+        What bounds it.
+    """
+    motion, pump = printer.motion, printer.pump
+    limits = [
+        (motion.curve_speed if isinstance(shape, Curve) else motion.straight_speed, "the profile"),
+        (pump.flow_max / area, f"the flow limit of {pump.flow_max:g} mm^3/s"),
+        (pump.max_e_speed / (area * pump.e_per_mm3), f"the E axis limit of {pump.max_e_speed:g} mm/s"),
+        (motion.max_speed, f"the printer's limit of {motion.max_speed:g} mm/s"),
+    ]
+    if isinstance(shape, Curve):
+        limits.append((math.sqrt(motion.acceleration * shape.radius), f"v^2 <= a R at a = {motion.acceleration:g} mm/s^2"))
+    return min(limits, key=lambda limit: limit[0])
+
+
+def _closed(outline: ArrayLike) -> NDArray[np.float64]:
+    points = np.asarray(outline, dtype=float)
+    return np.stack([points, np.roll(points, -1, axis=0)], axis=1)

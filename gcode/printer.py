@@ -1,0 +1,214 @@
+"""What one printer is and how it is run, read from a TOML profile: printer facts live there, never in code."""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from dataclasses import MISSING, dataclass, fields
+from importlib import resources
+from pathlib import Path
+from typing import Any, get_type_hints
+
+from skinfab.errors import InputError
+
+DEFAULT_PRINTER = "ender5plus-vipro"
+HOME_POLICIES = ("xyz", "xy", "none")
+
+
+@dataclass(frozen=True)
+class Bed:
+    """The reachable bed: `size` in x and y, `origin` = machine coordinates of its front left corner, `height` in z (mm)."""
+
+    size: tuple[float, float]
+    origin: tuple[float, float]
+    height: float
+
+
+@dataclass(frozen=True)
+class Heights:
+    """Nozzle heights over the glass, mm: where ink is laid, the range that is accepted, where the head travels."""
+
+    print: float
+    print_min: float
+    print_max: float
+    travel: float
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Speeds mm/s, `acceleration` mm/s^2, `junction_deviation` mm; `max_speed` is the firmware's own limit in x and y."""
+
+    straight_speed: float
+    curve_speed: float
+    travel_speed: float
+    z_speed: float
+    max_speed: float
+    acceleration: float
+    junction_deviation: float
+
+
+@dataclass(frozen=True)
+class Pump:
+    """The E axis that drives the ink.
+
+    `e_per_mm3` is the factor (mm of E per mm^3), `max_e` the firmware's EXTRUDE_MAXLENGTH (mm of E in one
+    command), `max_e_speed` mm/s of E, `flow_min` and `flow_max` mm^3/s, `prime` and `retract` mm^3,
+    `prime_rate` mm^3/s.
+    """
+
+    e_per_mm3: float
+    max_e: float
+    max_e_speed: float
+    flow_min: float
+    flow_max: float
+    prime: float
+    retract: float
+    prime_rate: float
+
+
+@dataclass(frozen=True)
+class Process:
+    """How a pattern is entered and left.
+
+    `overrun_start` and `overrun_end`: the head moves in the ink's plane without extruding, mm;
+    `print_overrun`: the same while extruding, before the path, mm; `pause`: s after each pattern;
+    `chord_tolerance`: mm, where arcs must be emitted as lines.
+    """
+
+    overrun_start: float
+    overrun_end: float
+    print_overrun: float
+    pause: float
+    chord_tolerance: float
+
+
+@dataclass(frozen=True)
+class Cleaning:
+    """Where the nozzle is wiped after each pattern (bed frame, mm), for how long (s), and the ink pushed there at first (mm^3)."""
+
+    x: float
+    y: float
+    seconds: float
+    initial_extrude: float
+
+
+@dataclass(frozen=True)
+class Printer:
+    """A whole profile. `arcs`: the firmware draws G2 and G3; `home`: xyz, xy or none; `cleaning` is optional.
+
+    Examples
+    --------
+    >>> printer = load_printer()
+    >>> printer.bed_size, printer.heights.print, printer.home
+    ((350.0, 350.0), 1.6, 'xy')
+    """
+
+    name: str
+    arcs: bool
+    home: str
+    bed: Bed
+    heights: Heights
+    motion: Motion
+    pump: Pump
+    process: Process
+    cleaning: Cleaning | None = None
+
+    @property
+    def bed_size(self) -> tuple[float, float]:
+        """Width and depth of the bed, mm."""
+        return self.bed.size
+
+
+def load_printer(name: str | Path = DEFAULT_PRINTER) -> Printer:
+    """Read a bundled profile by name, or any TOML file by path.
+
+    Raises
+    ------
+    InputError
+        No such profile, not TOML, a field missing, misspelt or of the wrong type, or values that contradict each other.
+
+    Examples
+    --------
+    >>> load_printer("generic-marlin").bed.height
+    200.0
+    """
+    path = Path(name)
+    bundled = resources.files("gcode") / "profiles"
+    if path.suffix == ".toml":
+        source: Any = path
+    else:
+        source = bundled / f"{name}.toml"
+        if not source.is_file():
+            raise InputError(f"no printer profile named {str(name)!r}; there are {', '.join(bundled_printers())}, or give a .toml file")
+    try:
+        data = tomllib.loads(source.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        raise InputError(f"no printer profile at {path}") from None
+    except OSError as fault:
+        raise InputError(f"cannot read the printer profile {path}: {fault.strerror or fault}") from fault
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as fault:
+        raise InputError(f"{path} is not a TOML file: {fault}") from fault
+    printer: Printer = _build(Printer, data, f"printer profile {name}")
+    _check(printer, f"printer profile {name}")
+    return printer
+
+
+def bundled_printers() -> tuple[str, ...]:
+    """Names of the bundled profiles."""
+    return tuple(sorted(p.name[:-5] for p in (resources.files("gcode") / "profiles").iterdir() if p.name.endswith(".toml")))
+
+
+def _build(kind: type, data: Any, where: str) -> Any:
+    """A dataclass from a TOML table, field by field."""
+    if not isinstance(data, dict):
+        raise InputError(f"{where}: it is {data!r}; it must be a table of fields")
+    expected = get_type_hints(kind)
+    if unknown := sorted(data.keys() - expected.keys()):
+        raise InputError(f"{where}: unknown field {unknown[0]!r}; it knows {', '.join(sorted(expected))}")
+    needed = {f.name for f in fields(kind) if f.default is MISSING}
+    if missing := sorted(needed - data.keys()):
+        raise InputError(f"{where}: field {missing[0]!r} is missing")
+    return kind(**{key: _value(expected[key], value, f"{where}, {key}") for key, value in data.items()})
+
+
+def _value(wanted: Any, value: Any, where: str) -> Any:
+    if wanted is float:
+        return _number(value, where)
+    if wanted == tuple[float, float]:
+        if not isinstance(value, list) or len(value) != 2:
+            raise InputError(f"{where} is {value!r}; it must be two numbers in brackets")
+        return tuple(_number(v, where, signed=True) for v in value)
+    if wanted in (bool, str):
+        if not isinstance(value, wanted):
+            raise InputError(f"{where} is {value!r}; it must be {'true or false' if wanted is bool else 'a text in quotes'}")
+        return value
+    return _build(Cleaning if wanted == Cleaning | None else wanted, value, where)
+
+
+def _number(value: Any, where: str, *, signed: bool = False) -> float:
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value) or (value < 0 and not signed):
+        raise InputError(f"{where} is {value!r}; it must be a number{'' if signed else ', zero or more'}")
+    return float(value)
+
+
+def _check(printer: Printer, where: str) -> None:
+    """Refuse values that contradict each other."""
+    h, m, p = printer.heights, printer.motion, printer.pump
+    positive = {
+        "bed, size": min(printer.bed.size),
+        "bed, height": printer.bed.height,
+        "process, chord_tolerance": printer.process.chord_tolerance,
+        **{f"motion, {f.name}": getattr(m, f.name) for f in fields(m)},
+        **{f"pump, {k}": getattr(p, k) for k in ("e_per_mm3", "max_e", "max_e_speed", "flow_max", "prime_rate")},
+    }
+    for key, value in positive.items():
+        if not value > 0:
+            raise InputError(f"{where}, {key} is {value:g}; it must be more than zero")
+    if printer.home not in HOME_POLICIES:
+        raise InputError(f"{where}, home is {printer.home!r}; it must be one of {', '.join(HOME_POLICIES)}")
+    if not h.print_min <= h.print <= h.print_max < h.travel <= printer.bed.height:
+        raise InputError(f"{where}, heights: print_min <= print <= print_max < travel <= bed height must hold, in mm")
+    if not p.flow_min <= p.flow_max:
+        raise InputError(f"{where}, pump: flow_min {p.flow_min:g} is above flow_max {p.flow_max:g} mm^3/s")
+    if p.prime != p.retract:
+        raise InputError(f"{where}, pump: prime {p.prime:g} and retract {p.retract:g} mm^3 differ; a pattern must end as it began, make them equal")

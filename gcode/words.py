@@ -1,0 +1,108 @@
+"""G-code text as commands with words: the tokens, nothing of their meaning."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from skinfab.errors import InputError
+
+#: Commands whose words are read; any other line (heaters, messages, fans) is passed over as it stands.
+READ = frozenset({"G0", "G1", "G2", "G3", "G4", "G5", "G20", "G21", "G28", "G90", "G91", "G92", "M82", "M83", "M302"})
+
+#: A line beyond this is not G-code, and a file beyond that is not a skin's.
+LINE_LIMIT, FILE_LIMIT = 4096, 256 * 2**20
+
+_COMMAND = re.compile(r"(?:[Nn]\d{1,9}\s*)?([GMT])\s*(\d{1,5})(\.\d{1,3})?(?![\d.])", re.IGNORECASE)
+_WORD = re.compile(r"\s*([A-Z])\s*([-+]?(?:\d+\.?\d*|\.\d+))?", re.IGNORECASE)
+_BRACKETS = re.compile(r"\([^()]*\)")
+
+
+@dataclass(frozen=True)
+class Command:
+    """One command line: `line` counts from 1, `code` is normalised ("G2" for "G02"), `size` is in bytes."""
+
+    line: int
+    code: str
+    words: dict[str, float | None]
+    comment: str
+    size: int
+
+
+def read_text(path: str | Path) -> str:
+    """The text of a G-code file, or one sentence why it is none.
+
+    Raises
+    ------
+    InputError
+        The file is missing, unreadable, binary or far too large.
+    """
+    path = Path(path)
+    try:
+        if path.stat().st_size > FILE_LIMIT:
+            raise InputError(f"{path} is larger than {FILE_LIMIT >> 20} MiB; that is not the G-code of a skin")
+        data = path.read_bytes()
+    except OSError as fault:
+        raise InputError(f"cannot read {path}: {fault.strerror or fault}") from fault
+    if b"\0" in data:
+        raise InputError(f"{path} is a binary file, not G-code text")
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return data.decode("latin-1")  # old slicers write their comments so
+
+
+def read_commands(text: str) -> Iterator[Command]:
+    """The commands and comments of a text, in order; a line of comment alone has the code "".
+
+    Raises
+    ------
+    InputError
+        A line that cannot be read, with its number.
+
+    Examples
+    --------
+    >>> [(c.code, c.words) for c in read_commands("g01x1.5 Y-2 ; hello")]
+    [('G1', {'X': 1.5, 'Y': -2.0})]
+    """
+    for line, raw in enumerate(text.replace("\r\n", "\n").replace("\r", "\n").split("\n"), 1):
+        body, mark, comment = raw.partition(";")
+        if len(body) > LINE_LIMIT:
+            raise InputError(f"line {line} is {len(body)} characters long; that is not a G-code command")
+        body = _BRACKETS.sub(" ", body).partition("*")[0].strip()
+        if not body or body == "%":
+            if mark:
+                yield Command(line, "", {}, comment.strip(), len(raw.encode()))
+            continue
+        found = _COMMAND.match(body)
+        if not found:
+            raise InputError(f"line {line}: cannot read {_shown(body)}; a command begins with G, M or T and a number")
+        letter, number, sub = found.groups()
+        code = f"{letter.upper()}{int(number)}{sub or ''}"
+        words = _words(body[found.end() :], line) if code in READ else {}
+        yield Command(line, code, words, comment.strip(), len(raw.encode()))
+
+
+def _words(rest: str, line: int) -> dict[str, float | None]:
+    words: dict[str, float | None] = {}
+    at = 0
+    while at < len(rest):
+        found = _WORD.match(rest, at)
+        if not found:
+            raise InputError(f"line {line}: cannot read {_shown(rest[at:])}; a word is one letter and one number")
+        letter = found[1].upper()
+        value = None if found[2] is None else float(found[2])
+        if value is not None and not math.isfinite(value):
+            raise InputError(f"line {line}: {letter} is not a finite number; write it out in millimetres")
+        if letter in words or letter in "GMT":
+            raise InputError(f"line {line}: a second {letter} on one line; give each command a line of its own")
+        words[letter] = value
+        at = found.end()
+    return words
+
+
+def _shown(text: str) -> str:
+    return repr(text if len(text) <= 30 else text[:30] + "...")

@@ -1,0 +1,107 @@
+"""G-code files, checked before a byte of them is written."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from gcode.check import check_program
+from gcode.estimate import Summary, summarise
+from gcode.marlin import Arcs, emit, with_chords
+from gcode.plan import Plan, plan
+from gcode.printer import Printer, load_printer
+from gcode.program import Program, quantised
+from skinfab.errors import InputError, RefusedError, SkinfabError
+from skinfab.files import atomic_write, explain_os_error
+from skinfab.material import load_material
+from skinfab.skin import Skin
+
+
+@dataclass(frozen=True)
+class PieceGcode:
+    """One written file: which piece, where, its plan and its summary."""
+
+    piece: str
+    file: Path
+    plan: Plan
+    summary: Summary
+
+
+def write_gcode(program: Program, target: str | Path, *, printer: Printer, arcs: Arcs = "native") -> Summary:
+    """Check a program, then write its text, whole or not at all.
+
+    Raises
+    ------
+    RefusedError
+        The program fails its check: names the first line and pattern and what to change. Nothing is written.
+    InputError
+        The file cannot be written.
+    """
+    text, summary = checked_text(program, printer=printer, arcs=arcs)
+    atomic_write(target, text)
+    return summary
+
+
+def write_skin(skin: Skin, folder: str | Path, *, arcs: Arcs | None = None, printer: Printer | None = None) -> tuple[PieceGcode, ...]:
+    """Write ``PIECE.gcode`` for every piece of a skin that carries a sensor.
+
+    All pieces are planned and checked before the first file is written.
+
+    Parameters
+    ----------
+    skin : Skin
+    folder : path
+        Made if it is not there.
+    arcs : "native" or "lines", optional
+        By the printer profile if not given.
+    printer : Printer, optional
+        The skin's own if not given.
+
+    Raises
+    ------
+    RefusedError
+        A program fails its check.
+    InputError
+        No sensor at all, a bad profile, or a folder that cannot be written.
+    """
+    printer = printer or load_printer(skin.printer)
+    arcs = arcs or ("native" if printer.arcs else "lines")
+    material = load_material(skin.material)
+    plans = [plan(p, skin.sensors_on(p.id), printer=printer, material=material) for p in skin.pieces if skin.sensors_on(p.id)]
+    if not plans:
+        raise InputError("this skin has no sensor, so there is nothing to print; place one first")
+    texts = [checked_text(planned.program, printer=printer, arcs=arcs) for planned in plans]
+    folder = Path(folder)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as fault:
+        raise InputError(explain_os_error(fault, folder)) from fault
+    written = []
+    for planned, (text, summary) in zip(plans, texts, strict=True):
+        file = folder / f"{planned.program.name}.gcode"
+        atomic_write(file, text)
+        written.append(PieceGcode(planned.program.name, file, planned, summary))
+    return tuple(written)
+
+
+def checked_text(program: Program, *, printer: Printer, arcs: Arcs = "native") -> tuple[str, Summary]:
+    """The text of a program that passes its check, and its summary.
+
+    Raises
+    ------
+    RefusedError
+        It does not pass.
+    """
+    if arcs == "native" and not printer.arcs:
+        raise RefusedError(f"{printer.name} draws no arcs (its profile says arcs = false); emit with --arcs lines")
+    if arcs == "lines":
+        program = quantised(with_chords(program, tolerance=printer.process.chord_tolerance), e_per_mm3=printer.pump.e_per_mm3)
+    try:
+        findings = check_program(program, printer)
+    except SkinfabError as fault:
+        raise RefusedError(f"the G-code of piece {program.name} was not written: {fault}") from fault
+    if findings:
+        more = f" ({len(findings) - 1} more like this or others)" if len(findings) > 1 else ""
+        raise RefusedError(f"the G-code of piece {program.name} was not written: {findings[0]}{more}")
+    text = emit(program, printer)
+    return text, summarise(program, printer, lines=text.count("\n"))
