@@ -16,6 +16,7 @@ from skinfab.material import Material
 from skinfab.mesh.topology import Topology
 from skinfab.mould_plan import MouldPlan, mould_plan
 from skinfab.pieces import Piece
+from skinfab.skin import Skin
 from skinfab.tolerances import CAVITY_FRACTION
 
 #: How far the wall stands above the silicone, mm: the pour does not run over before it levels, and
@@ -115,6 +116,14 @@ def casting_mould(piece: Piece, *, material: Material, depth: float | None = Non
             f"(area {piece.area:.1f} mm^2 x {depth:g} mm); check the flat piece for overlaps"
         )
     return CastingMould(piece.id, V, F, floor_z, fill_z, top_z, piece.area, depth, cavity / 1000, plan.marks, plan.warnings)
+
+
+def skin_moulds(skin: Skin, *, material: Material) -> list[CastingMould]:
+    """One mould a piece, with a wire slot for either terminal of each of its sensors."""
+    return [
+        casting_mould(piece, material=material, exits=[end for s in skin.sensors_on(piece.id) for end in (s.path.start, s.path.end)])
+        for piece in skin.pieces
+    ]
 
 
 def write_mould(mould: CastingMould, path: str | Path) -> None:

@@ -1,0 +1,51 @@
+"""`skinfab mould SKIN -o DIR`: a casting mould for each flat piece, and the recipe to fill them."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+
+def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Register the command."""
+    p = subparsers.add_parser(
+        "mould",
+        help="casting moulds for the flat pieces",
+        description="Write one printable mould (binary STL, mm) for each flat piece into DIR and print the recipe to fill them.",
+    )
+    p.add_argument("skin", metavar="SKIN", type=Path, help="the skin document")
+    p.add_argument("-o", "--output", metavar="DIR", type=Path, required=True, help="folder for PIECE.stl; made if missing")
+    p.set_defaults(run=run)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Write the moulds, all or none."""
+    from skinfab.document import load_skin
+    from skinfab.errors import InputError
+    from skinfab.files import explain_os_error
+    from skinfab.material import load_material
+    from skinfab.mould import skin_moulds, write_mould
+    from skinfab.recipe import recipe
+
+    skin = load_skin(args.skin)
+    if not skin.pieces:
+        raise InputError(f"{args.skin} has no flat pieces to cast; cut it first with skinfab segment")
+    material = load_material(skin.material)
+    moulds = skin_moulds(skin, material=material)
+    weighed = recipe({mould.piece: mould.cavity_ml for mould in moulds}, material)
+    try:
+        args.output.mkdir(parents=True, exist_ok=True)
+    except OSError as fault:
+        raise InputError(explain_os_error(fault, args.output)) from fault
+    for mould in moulds:
+        path = args.output / f"{mould.piece}.stl"
+        write_mould(mould, path)
+        x, y = mould.marks[0]
+        print(f"{path}: holds {mould.cavity_ml:.2f} ml; the lower left mark is at ({x:.2f}, {y:.2f}) mm of the piece")
+        for warning in mould.warnings:
+            print(f"warning: {warning}", file=sys.stderr)
+    print()
+    for number, step in enumerate(weighed.steps, start=1):
+        print(f"{number}. {step}")
+    return 0
