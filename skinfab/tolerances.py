@@ -62,3 +62,7 @@ CREASE_RAD = 0.5235987755982988  # 30 degrees
 
 #: Creases shorter than this altogether are noise of a scan; the smallest sensor is as wide.
 CREASE_LENGTH_MM = 10.0
+
+#: A triangle is a sliver (reported, kept) when its height is under this fraction of its longest edge:
+#: its cotangents exceed 1000, where a plain cotangent Laplacian loses three digits.
+SLIVER_HEIGHT = 1e-3

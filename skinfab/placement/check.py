@@ -1,0 +1,185 @@
+"""Whether sensors fit: on their piece, off its edges, off one another. Exact; findings are in words."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from skinfab.errors import RefusedError
+from skinfab.material import Material
+from skinfab.paths import Path
+from skinfab.pieces import Piece
+from skinfab.placement.distance import Curves, distance, self_distance
+from skinfab.placement.locate import Locator
+from skinfab.placement.sensor import Sensor
+from skinfab.tolerances import CLEARANCE_MM, PREVIEW_CHORD_MM
+
+#: How many findings a refusal names.
+_NAMED = 5
+
+
+class PlacedSensors(Protocol):
+    """What `validate` looks at: a skin document, or anything with its pieces and sensors."""
+
+    @property
+    def pieces(self) -> tuple[Piece, ...]: ...
+    @property
+    def sensors(self) -> tuple[Sensor, ...]: ...
+
+
+@dataclass(frozen=True)
+class Finding:
+    """Something wrong with a sensor.
+
+    Parameters
+    ----------
+    text : str
+        "C1 is 0.6 mm outside piece P2".
+    amount : float, mm
+        By how much; infinite for what is wrong altogether.
+    """
+
+    text: str
+    amount: float
+
+
+def edge_curves(piece: Piece) -> Curves:
+    """The piece's boundary: outline, holes and both sides of every dart, closed or open."""
+    ends = piece.topology.E[piece.topology.is_boundary]
+    return Curves.of_edges(piece.UV[ends])
+
+
+def check_sensor(piece: Piece, sensor: Sensor, others: Iterable[Sensor], *, material: Material) -> list[str]:
+    """What is wrong with a sensor, in words; empty where all is well.
+
+    Parameters
+    ----------
+    piece : Piece
+        The one that the sensor names.
+    sensor : Sensor
+    others : iterable of Sensor
+        Of the whole skin; those on other pieces and the sensor itself are passed over.
+    material : Material
+        For its `margin` (bead edge to piece edge) and `gap` (bead edge to bead edge).
+    """
+    return [f.text for f in find_faults(piece, sensor, others, material=material)]
+
+
+def find_faults(
+    piece: Piece,
+    sensor: Sensor,
+    others: Iterable[Sensor],
+    *,
+    material: Material,
+    edges: Curves | None = None,
+    locator: Locator | None = None,
+) -> list[Finding]:
+    """As `check_sensor`, with amounts; `edges` and `locator` of the piece save time where many sensors are tried."""
+    edges = edge_curves(piece) if edges is None else edges
+    curves = Curves.of_segments(sensor.printed_path.segments)
+    bead = sensor.pattern.bead
+    found = list(_containment(piece, sensor, curves, edges, material.margin, locator))
+    for other in others:
+        if other.piece != piece.id or other.id == sensor.id:
+            continue
+        apart = distance(curves, Curves.of_segments(other.printed_path.segments))
+        lack = material.gap + (bead + other.pattern.bead) / 2 - apart
+        if lack > CLEARANCE_MM:
+            found.append(Finding(f"{sensor.id} is {_mm(lack)} mm too close to {other.id}", lack))
+    lack = material.gap + bead - own_clearance(sensor, need=material.gap + bead)
+    if lack > CLEARANCE_MM:
+        found.append(Finding(f"{sensor.id} is {_mm(lack)} mm too close to itself", lack))
+    return found
+
+
+def own_clearance(sensor: Sensor, *, need: float) -> float:
+    """Least distance of a sensor's centre line to itself, mm: turns to turns, pads to turns, pad to pad.
+
+    A pad's own rows are meant to touch, and a pad meets its own lead.
+    """
+    path, printed = sensor.path.segments, sensor.printed_path.segments
+    # The tightest half-circle that keeps `need` across is pi/2 need long; a square corner into a turn that curls
+    # back, as at a spiral's links, needs a little more before its two sides are that far apart.
+    least = self_distance(sensor.path, apart=2 * need)
+    pad = (len(printed) - len(path)) // 2
+    if pad:
+        first, last = Curves.of_segments(printed[:pad]), Curves.of_segments(printed[-pad:])
+        least = min(least, distance(first, last))
+        if len(path) > 1:
+            least = min(least, distance(first, Curves.of_segments(path[1:])), distance(last, Curves.of_segments(path[:-1])))
+    return least
+
+
+def validate(skin: PlacedSensors, material: Material) -> None:
+    """Check every sensor of a skin.
+
+    Raises
+    ------
+    RefusedError
+        Something is wrong; the worst of it is named.
+    """
+    found: list[Finding] = []
+    pieces = {p.id: p for p in skin.pieces}
+    for what, used in (("id", Counter(s.id for s in skin.sensors)), ("channel", Counter(str(s.channel) for s in skin.sensors))):
+        found += [Finding(f"{what} {value} is used by more than one sensor", math.inf) for value, n in used.items() if n > 1]
+    for k, sensor in enumerate(skin.sensors):
+        if sensor.piece not in pieces:
+            found.append(Finding(f"{sensor.id} is on piece {sensor.piece}, which does not exist", math.inf))
+            continue
+        # Each pair of sensors once.
+        found += find_faults(pieces[sensor.piece], sensor, skin.sensors[:k], material=material)
+    if found:
+        raise RefusedError(describe(found))
+
+
+def describe(found: Sequence[Finding]) -> str:
+    """One sentence that names the worst findings first."""
+    worst = sorted(found, key=lambda f: -f.amount)
+    rest = len(worst) - _NAMED
+    more = f"; and {rest} more" if rest > 0 else ""
+    return "; ".join(f.text for f in worst[:_NAMED]) + more + "; move, turn or shrink them"
+
+
+def _containment(piece: Piece, sensor: Sensor, curves: Curves, edges: Curves, margin: float, locator: Locator | None) -> Iterable[Finding]:
+    bead = sensor.pattern.bead
+    apart = distance(curves, edges)
+    locator = Locator(piece.UV, piece.F) if locator is None else locator
+    # A path that meets no edge is inside or outside as a whole: one point decides.
+    inside = locator.faces([sensor.printed_path.start])[0] >= 0
+    lack = bead / 2 + margin - apart
+    if inside and lack <= CLEARANCE_MM:
+        return
+    if inside and apart >= bead / 2:
+        where = f"{_mm(lack)} mm too close to the edge of piece {piece.id}"
+        yield Finding(f"{sensor.id} is {where} ({apart - bead / 2:.2f} mm from bead to edge, {margin:g} mm is the margin)", lack)
+        return
+    outside = _overhang(sensor.printed_path, edges, locator)
+    if outside > 0:
+        yield Finding(f"{sensor.id} is {_mm(outside + bead / 2)} mm outside piece {piece.id}", outside + bead / 2)
+    elif apart <= CLEARANCE_MM:
+        # Both sides of the edge are piece: a closed dart, or a fold of no width.
+        yield Finding(f"{sensor.id} crosses an edge of piece {piece.id} (a dart or a slit)", bead / 2 + margin)
+    else:
+        yield Finding(f"{sensor.id} is {_mm(bead / 2 - apart)} mm outside piece {piece.id}", bead / 2 - apart)
+
+
+def _overhang(path: Path, edges: Curves, locator: Locator) -> float:
+    """How far the centre line's farthest part lies outside, mm; 0 where none does. For words only: it samples the path."""
+    import shapely
+
+    points = path.to_polyline(tolerance=PREVIEW_CHORD_MM)
+    count = max(int(path.length / 0.5), 1)
+    points = np.vstack([points, path.point_at(np.linspace(0, 1, count + 1))])
+    out = points[locator.faces(points) < 0]
+    walls = shapely.MultiLineString(list(np.stack([edges.p0, edges.p1], axis=1)))
+    return float(shapely.distance(shapely.points(out), walls).max(initial=0.0))
+
+
+def _mm(amount: float) -> str:
+    """One decimal; two where it would read 0.0 or hide what is wrong."""
+    return f"{amount:.1f}" if amount >= 0.1 else f"{max(amount, 0.001):.3f}"
