@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from skinfab.flatten.overlap import overlap_area
 from skinfab.mesh.topology import Topology
+from skinfab.tolerances import DEGENERATE_HEIGHT
 
 FloatArray = NDArray[np.float64]
 
@@ -24,7 +25,8 @@ class Distortion:
     Parameters
     ----------
     d : (m,) float
-        Per triangle; infinite where a triangle collapsed.
+        Per triangle; infinite where a triangle collapsed; 4 where it has no area on the object to begin with
+        (no shape that could be distorted: such triangles count nowhere).
     mean, p95, p99, max : float
         Area-weighted mean and quantiles of d, and its largest value.
     flipped : int
@@ -81,8 +83,9 @@ def singular_values(V: FloatArray, F: NDArray[np.int64], UV: FloatArray) -> Floa
     """
     J = jacobians(V, F, UV)
     a, b, c, d = J[:, 0, 0], J[:, 0, 1], J[:, 1, 0], J[:, 1, 1]
-    q, r = np.hypot(a + d, c - b) / 2, np.hypot(a - d, c + b) / 2
-    return np.stack([q + r, q - r], axis=1)
+    with np.errstate(invalid="ignore"):
+        q, r = np.hypot(a + d, c - b) / 2, np.hypot(a - d, c + b) / 2
+        return np.stack([q + r, q - r], axis=1)
 
 
 def distortion_of(s: FloatArray) -> FloatArray:
@@ -112,18 +115,18 @@ def measure(V: FloatArray, F: NDArray[np.int64], UV: FloatArray, *, topology: To
     """
     s = singular_values(V, F, UV)
     d = distortion_of(s)
-    p = V[F]
-    area = np.linalg.norm(np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]), axis=1) / 2
+    area, real = _areas(V, F)
+    d = np.where(real, d, 4.0)
     order = np.argsort(d)
     share = np.cumsum(area[order]) / area.sum()
-    p95, p99 = (float(d[order[min(np.searchsorted(share, q), len(d) - 1)]]) for q in (0.95, 0.99))
+    p95, p99 = (float(d[order[min(int(np.searchsorted(share, q)), len(d) - 1)]]) for q in (0.95, 0.99))
     return Distortion(
         d=d,
         mean=float(np.average(d, weights=area)),
         p95=p95,
         p99=p99,
         max=float(d.max()),
-        flipped=int((~(s[:, 1] > 0)).sum()),
+        flipped=int((~(s[real, 1] > 0)).sum()),
         overlap_mm2=overlap_area(F, UV, topology=topology),
     )
 
@@ -134,8 +137,15 @@ def best_scale(V: FloatArray, F: NDArray[np.int64], UV: FloatArray) -> float:
     Scaling by t turns the mean into t^2 P + Q / t^2, least at t = (Q / P)^(1/4).
     """
     s = singular_values(V, F, UV)
-    p = V[F]
-    area = np.linalg.norm(np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]), axis=1)
-    good = s[:, 1] > 0
+    area, real = _areas(V, F)
+    good = real & (s[:, 1] > 0)
     square = s[good] ** 2
     return float((np.sum(area[good, None] / square) / np.sum(area[good, None] * square)) ** 0.25) if good.any() else 1.0
+
+
+def _areas(V: FloatArray, F: NDArray[np.int64]) -> tuple[FloatArray, NDArray[np.bool_]]:
+    """Area of each triangle, mm^2, and whether it is wide enough to have a shape."""
+    p = V[F]
+    twice = np.linalg.norm(np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]), axis=1)
+    longest = np.linalg.norm(p - np.roll(p, 1, axis=1), axis=2).max(axis=1)
+    return twice / 2, twice > DEGENERATE_HEIGHT * longest**2

@@ -17,8 +17,9 @@ from scipy.sparse import csc_array
 from skinfab.errors import InputError
 from skinfab.flatten._dirichlet import assemble, energies, first_collapse
 from skinfab.flatten.distortion import local_triangles
+from skinfab.flatten.laplacian import mollified_lengths
 from skinfab.linalg import Cholesky
-from skinfab.tolerances import NEWTON_DECREASE, NEWTON_RIDGE
+from skinfab.tolerances import MOLLIFY, NEWTON_DECREASE, NEWTON_RIDGE
 
 FloatArray = NDArray[np.float64]
 
@@ -48,12 +49,7 @@ class IsometricSolver:
     ----------
     V : (n, 3) float64, mm
     F : (m, 3) int64
-        No triangle of zero area.
-
-    Raises
-    ------
-    InputError
-        A triangle has no area.
+        Needles and triangles without area are given the least width that can be computed with.
 
     Examples
     --------
@@ -65,10 +61,8 @@ class IsometricSolver:
 
     def __init__(self, V: FloatArray, F: NDArray[np.int64]) -> None:
         self.F, self.n = F, len(V)
-        rest = local_triangles(V, F)
+        rest = _rest_triangles(V, F)
         twice_area = rest[:, 0, 0] * rest[:, 1, 1]
-        if not (twice_area > 0).all():
-            raise InputError(f"triangle {int(np.argmin(twice_area))} has no area and cannot be flattened; run with --repair")
         self.weight = twice_area / twice_area.sum()
         self.gradients = _basis_gradients(rest, twice_area)
         self._slots, self._pattern = _sparsity(F, self.n)
@@ -136,6 +130,18 @@ class IsometricSolver:
                 return trial, e
             t /= 2
         return u, start
+
+
+def _rest_triangles(V: FloatArray, F: NDArray[np.int64]) -> FloatArray:
+    """Each triangle in its own plane, (m, 2, 2) mm, from edge lengths when some triangle is a needle."""
+    rest = local_triangles(V, F)
+    opposite = mollified_lengths(V, F)
+    base = opposite[:, 2]
+    if np.array_equal(base, rest[:, 0, 0]):
+        return rest
+    along = (base**2 + opposite[:, 1] ** 2 - opposite[:, 0] ** 2) / (2 * base)
+    up = np.sqrt(np.maximum(opposite[:, 1] ** 2 - along**2, (MOLLIFY * base) ** 2))
+    return np.stack([np.stack([base, np.zeros_like(base)], axis=1), np.stack([along, up], axis=1)], axis=1)
 
 
 def _basis_gradients(rest: FloatArray, twice_area: FloatArray) -> FloatArray:

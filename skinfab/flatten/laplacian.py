@@ -25,7 +25,7 @@ class Intrinsic:
     @property
     def angle_sum(self) -> FloatArray:
         """(n,) rad: sum of the corner angles at each vertex."""
-        return np.bincount(self.F.ravel(), self.angle.ravel(), self.n_vertices)
+        return np.bincount(self.F.ravel(), self.angle.ravel(), self.n_vertices).astype(np.float64)
 
     def stiffness(self) -> csc_array:
         """The positive semidefinite cotangent matrix, (n, n): the quadratic form of the Dirichlet energy."""
@@ -54,10 +54,7 @@ def intrinsic(V: FloatArray, F: NDArray[np.int64]) -> Intrinsic:
     >>> np.degrees(t.angle).round(6).tolist()
     [[90.0, 45.0, 45.0]]
     """
-    p = V[F]
-    length = np.linalg.norm(p[:, [1, 2, 0]] - p[:, [2, 0, 1]], axis=2)  # opposite each corner
-    slack = length[:, [1, 2, 0]] + length[:, [2, 0, 1]] - length
-    length = length + max(0.0, float(np.max(MOLLIFY * length.mean() - slack, initial=0.0)))
+    length = mollified_lengths(V, F)
     a, b, c = length.T
     # Kahan's stable form of Heron's rule keeps its digits on needles.
     high, mid, low = np.sort(length, axis=1)[:, ::-1].T
@@ -65,3 +62,11 @@ def intrinsic(V: FloatArray, F: NDArray[np.int64]) -> Intrinsic:
 
     dot = np.stack([b**2 + c**2 - a**2, c**2 + a**2 - b**2, a**2 + b**2 - c**2], axis=1) / 2
     return Intrinsic(F, len(V), np.arctan2(twice_area[:, None], dot), dot / twice_area[:, None])
+
+
+def mollified_lengths(V: FloatArray, F: NDArray[np.int64]) -> FloatArray:
+    """Edge lengths opposite each corner, (m, 3) mm, all longer by the least amount that leaves no needle."""
+    p = V[F]
+    length = np.linalg.norm(p[:, [1, 2, 0]] - p[:, [2, 0, 1]], axis=2)
+    slack = length[:, [1, 2, 0]] + length[:, [2, 0, 1]] - length
+    return length + max(0.0, float(np.max(MOLLIFY * length.mean() - slack, initial=0.0)))

@@ -37,6 +37,10 @@ _GLUE_EXCESS = 0.1
 _SCRAP = 0.002
 
 
+#: On the fine mesh only pieces under this part of the surface are worth trying to glue.
+_SMALL = 0.03
+
+
 @dataclass(frozen=True, eq=False)
 class Seams:
     """A seam set and the good pieces it gives.
@@ -80,7 +84,8 @@ def find_seams(mesh: Mesh, limits: Limits, *, neck: float = 4.0, progress: Calla
         EF = mesh.topology.EF
         inside = (EF[:, 1] >= 0) & (label[EF[:, 0]] == label[EF[:, 1]])
         cut = (cut & inside) | borders(mesh, merged)
-        seams = Seams(*refine_seams(mesh, cut, limits, seam_weights(mesh), progress=progress))
+        cut, pieces = refine_seams(mesh, cut, limits, seam_weights(mesh), progress=progress)
+        seams = Seams(*glue_pieces(mesh, cut, pieces, limits, neck=neck, excess=np.inf, smaller_than=_SMALL * mesh.area))
     return seams
 
 

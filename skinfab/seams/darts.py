@@ -44,8 +44,8 @@ def grow_dart(mesh: Mesh, piece: OpenPiece, d: NDArray[np.float64], weight: NDAr
     distance, before = shortest_tree(edge_graph(topology, edge_weight, n), np.flatnonzero(on_boundary))
     area = mesh.face_areas[piece.faces]
     corner = piece.F.ravel()
-    excess = np.bincount(corner, np.repeat((np.minimum(d, _WORST_D) - 4) * area, 3), n)
-    excess /= np.maximum(np.bincount(corner, np.repeat(area, 3), n), np.finfo(float).tiny)
+    around = np.maximum(np.bincount(corner, np.repeat(area, 3), n), np.finfo(float).tiny)
+    excess = np.bincount(corner, np.repeat((np.minimum(d, _WORST_D) - 4) * area, 3), n) / around
     curvature = np.abs(2 * np.pi - intrinsic(mesh.V[piece.vertices], piece.F).angle_sum)
     reach = np.minimum(distance / np.sqrt(area.sum()), 0.5)
     score = np.where(on_boundary, -np.inf, excess * reach * (1 + 4 * curvature))

@@ -21,7 +21,7 @@ _CONE = 0.3
 
 
 def glue_pieces(
-    mesh: Mesh, cut: BoolArray, pieces: list[Judged], limits: Limits, *, neck: float, excess: float
+    mesh: Mesh, cut: BoolArray, pieces: list[Judged], limits: Limits, *, neck: float, excess: float, smaller_than: float = np.inf
 ) -> tuple[BoolArray, list[Judged]]:
     """Glue neighbours, the longest border first, as long as the result keeps to `limits`.
 
@@ -36,6 +36,8 @@ def glue_pieces(
         A border shorter than this is not glued: what hangs on it would tear off.
     excess : float
         By how much a glued piece's mean d may be above the area-weighted mean of its two parts.
+    smaller_than : float, mm^2
+        Only pairs of which one has less area than this.
 
     Returns
     -------
@@ -57,6 +59,9 @@ def glue_pieces(
         trial = cut.copy()
         trial[edges] = False
         faces = np.concatenate([judged[a][0].faces, judged[b][0].faces])
+        if min(_area(mesh, judged[a]), _area(mesh, judged[b])) >= smaller_than:
+            refused.add((a, b, int(edges.min())))
+            continue
         (piece,) = open_pieces(mesh, trial, faces=faces)
         verdict = judge(mesh, piece, limits) if piece.is_disk else None
         if verdict is None or not verdict.accepted or verdict.distortion.mean > _mean(mesh, judged[a], judged[b]) + excess:
@@ -71,8 +76,11 @@ def glue_pieces(
 
 
 def _mean(mesh: Mesh, *parts: Judged) -> float:
-    areas = [float(mesh.face_areas[piece.faces].sum()) for piece, _ in parts]
-    return float(np.average([verdict.distortion.mean for _, verdict in parts], weights=areas))
+    return float(np.average([verdict.distortion.mean for _, verdict in parts], weights=[_area(mesh, part) for part in parts]))
+
+
+def _area(mesh: Mesh, part: Judged) -> float:
+    return float(mesh.face_areas[part[0].faces].sum())
 
 
 def _is_cone(mesh: Mesh) -> BoolArray:

@@ -31,7 +31,7 @@ def farthest_faces(piece: OpenPiece, UV: FloatArray) -> tuple[int, int]:
 
 def overlapping_faces(mesh: Mesh, piece: OpenPiece, UV: FloatArray) -> tuple[int, int]:
     """Of all pairs of flat triangles that lie on each other, the one that is farthest apart on the object."""
-    triangles = shapely.polygons(UV[piece.F])
+    triangles = np.asarray(shapely.polygons(UV[piece.F]))
     one, two = shapely.STRtree(triangles).query(triangles, predicate="intersects")
     apart = one < two
     one, two = one[apart], two[apart]

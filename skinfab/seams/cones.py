@@ -1,0 +1,96 @@
+"""Flatten with cones: cut through them by short seams, then lay out with the scale factors they imply."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from skinfab.errors import InputError
+from skinfab.flatten.bff import flatten_disk
+from skinfab.flatten.cones import cone_scale, place_cones
+from skinfab.flatten.distortion import best_scale
+from skinfab.mesh.model import Mesh
+from skinfab.seams.cut import OpenPiece, open_pieces
+from skinfab.seams.disk import cut_to_disk
+from skinfab.seams.graph import edge_graph, shortest_tree, trace
+from skinfab.seams.weights import seam_weights
+
+BoolArray = NDArray[np.bool_]
+IntArray = NDArray[np.int64]
+
+
+def cut_through(mesh: Mesh, points: IntArray) -> BoolArray:
+    """Seams that open `mesh` to a disk with every one of `points` on its boundary, (e,) bool.
+
+    Each point is joined to what is cut already by a shortest path, the nearest first (Prim's order).
+
+    Parameters
+    ----------
+    mesh : Mesh
+        One component.
+    points : (c,) int64
+        Vertices.
+    """
+    topology, weight = mesh.topology, seam_weights(mesh)
+    cut = np.zeros(len(topology.E), dtype=bool)
+    start = int(points[0]) if len(points) else None
+    if topology.euler != 2 or topology.is_boundary.any():
+        cut[cut_to_disk(topology, weight, len(mesh.V), start=start)] = True
+    seam = np.zeros(len(mesh.V), dtype=bool)
+    seam[topology.E[cut | topology.is_boundary].ravel()] = True
+    if not seam.any() and start is not None:
+        seam[start] = True
+    graph = edge_graph(topology, weight, len(mesh.V))
+    left = [int(p) for p in points if not seam[p]]
+    while left:
+        distance, before = shortest_tree(graph, np.flatnonzero(seam))
+        nearest = min(left, key=lambda p: (distance[p], p))
+        path = trace(before, nearest)
+        cut[topology.edge_ids(path)] = True
+        seam[path.ravel()] = True
+        left = [p for p in left if not seam[p]]
+    return cut
+
+
+def flatten_with_cones(
+    mesh: Mesh, *, cones: IntArray | None = None, count: int | None = None
+) -> tuple[BoolArray, OpenPiece, NDArray[np.float64], IntArray]:
+    """Boundary first flattening with cone singularities.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        One component, manifold; closed or open.
+    cones : (c,) int64, optional
+        Vertices. Default: placed automatically.
+    count : int, optional
+        How many to place; default as many as needed.
+
+    Returns
+    -------
+    cut : (e,) bool
+    piece : OpenPiece
+    UV : (p, 2) float64, mm
+        At the scale of the least d.
+    cones : (c,) int64
+
+    Raises
+    ------
+    InputError
+        Several components, or a cone that is no vertex.
+    """
+    topology = mesh.topology
+    if topology.face_components()[0] != 1:
+        raise InputError("cones need one connected surface; use --method auto for several components")
+    if cones is None:
+        cones = place_cones(mesh.V, mesh.F, count=count, topology=topology)
+    if missing := [int(c) for c in cones if not 0 <= c < len(mesh.V)]:
+        raise InputError(f"cone vertex {missing[0]} does not exist; the mesh has vertices 0 to {len(mesh.V) - 1}")
+    cut = cut_through(mesh, cones)
+    (piece,) = open_pieces(mesh, cut)
+    if not piece.is_disk:
+        raise InputError("a closed surface needs at least two cones to open it; use --cones 8 or --cones auto")
+    u, _ = cone_scale(mesh.V, mesh.F, cones, topology=topology)
+    V = mesh.V[piece.vertices]
+    uv = flatten_disk(V, piece.F, scale=u[piece.vertices], topology=piece.topology)
+    return cut, piece, uv * best_scale(V, piece.F, uv), cones
