@@ -66,3 +66,9 @@ CREASE_LENGTH_MM = 10.0
 #: A triangle is a sliver (reported, kept) when its height is under this fraction of its longest edge:
 #: its cotangents exceed 1000, where a plain cotangent Laplacian loses three digits.
 SLIVER_HEIGHT = 1e-3
+
+#: Holes with more border edges than this are openings of the object (the base of a finger), not damage; --repair keeps them.
+REPAIR_HOLE_EDGES = 30
+
+#: Parts smaller than this fraction of the mesh's diagonal are specks of a scan; --repair removes them.
+REPAIR_SPECK = 0.02

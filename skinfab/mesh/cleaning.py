@@ -1,0 +1,239 @@
+"""The harmless mendings, one function each: none moves a point of the surface.
+
+Each takes vertices and faces and returns them with one sentence on what was done, or "" for nothing.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from skinfab.mesh.fans import components, corner_fans, duplicate_faces, forward_sides, relative_heights, unbalanced_edges, winding
+from skinfab.mesh.stl import weld
+from skinfab.mesh.topology import Topology
+from skinfab.tolerances import DEGENERATE_HEIGHT
+
+Points = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+Mended = tuple[Points, IntArray, str]
+
+
+def _several(count: int, what: str) -> str:
+    plural = {"vertex": "vertices"}.get(what.split()[-1], what.split()[-1] + "s")
+    return f"1 {what}" if count == 1 else f"{count} {' '.join([*what.split()[:-1], plural])}"
+
+
+def drop_repeated_corners(V: Points, F: IntArray) -> Mended:
+    """Drop faces that use a vertex twice."""
+    bad = (F == np.roll(F, 1, axis=1)).any(axis=1)
+    return V, F[~bad], f"dropped {_several(int(bad.sum()), 'degenerate face')} (first: face {np.argmax(bad)})" if bad.any() else ""
+
+
+def drop_duplicates(V: Points, F: IntArray) -> Mended:
+    """Of faces with the same corners keep the first."""
+    bad = duplicate_faces(F)
+    return V, F[~bad], f"dropped {_several(int(bad.sum()), 'duplicate face')} (first: face {np.argmax(bad)})" if bad.any() else ""
+
+
+def weld_cracks(V: Points, F: IntArray) -> Mended:
+    """Join vertices at the same place where that closes cracks and ties no knot."""
+    place, index = weld(V)
+    if len(place) == len(V) or not len(F):
+        return V, F, ""
+    before = Topology(F)
+    if not before.is_boundary.any():
+        return V, F, ""
+    joined = index[F]
+    _, proper, _ = drop_repeated_corners(place, joined)
+    _, proper, _ = drop_duplicates(place, proper)
+    after = Topology(proper)
+    knots = int(unbalanced_edges(after, winding(after).turn).sum())
+    knots_before = int(unbalanced_edges(before, winding(before).turn).sum())
+    if not len(proper) or after.is_boundary.sum() >= before.is_boundary.sum() or knots > knots_before:
+        return V, F, ""
+    closed = int(before.is_boundary.sum() - after.is_boundary.sum())
+    return place, proper, f"joined {_several(len(V) - len(place), 'coincident vertex')}, which closed {_several(closed, 'open edge')}"
+
+
+def merge_flat_faces(V: Points, F: IntArray) -> Mended:
+    """Take faces without area out of the surface without moving it.
+
+    A side of no length is contracted; otherwise the longest side is flipped into the neighbour across
+    it, which then has the flat face's middle corner on its side, or at a border the face is dropped.
+    """
+    F = F.copy()
+    done = 0
+    while True:
+        flat = np.flatnonzero(relative_heights(V, F) <= DEGENERATE_HEIGHT)
+        changed, F = _merge_round(V, F, flat)
+        done += changed
+        if not changed:
+            break
+    return V, F, f"merged {_several(done, 'face')} without area into their neighbours" if done else ""
+
+
+def _merge_round(V: Points, F: IntArray, flat: IntArray) -> tuple[int, IntArray]:
+    """One pass over the flat faces, none touching one already changed in this pass."""
+    if not len(flat):
+        return 0, F
+    top = Topology(F)
+    touched = np.zeros(len(V), dtype=bool)
+    drop = np.zeros(len(F), dtype=bool)
+    moved = np.arange(len(V))
+    changed = 0
+    new_edges: set[tuple[int, int]] = set()
+    for f in flat.tolist():
+        if touched[F[f]].any():
+            continue
+        sides = np.linalg.norm(V[np.roll(F[f], -1)] - V[F[f]], axis=1)
+        k = int(np.argmax(sides))
+        e = int(top.FE[f, k])
+        a, b, c = (int(F[f, (k + s) % 3]) for s in range(3))
+        short = int(np.argmin(sides))
+        if sides[short] == 0:
+            keep, gone = int(F[f, short]), int(F[f, (short + 1) % 3])
+            if _can_contract(top, F, keep, gone):
+                moved[gone] = keep
+                touched[F[(F == gone).any(axis=1) | (F == keep).any(axis=1)]] = True
+                changed += 1
+            continue
+        if top.edge_count[e] == 1:
+            drop[f] = True
+        elif top.edge_count[e] == 2:
+            g = int(top.EF[e, 1] if top.EF[e, 0] == f else top.EF[e, 0])
+            j = int(top.EC[e, 1] if top.EF[e, 0] == f else top.EC[e, 0])
+            d = int(F[g, (j + 2) % 3])
+            pair = (min(c, d), max(c, d))
+            if c == d or touched[d] or pair in new_edges or top.edge_ids(np.array([pair]))[0] >= 0 or F[g, j] != b:
+                continue
+            if _improves(V, (a, d, c), (d, b, c), (f, g), F):
+                F[f], F[g] = (a, d, c), (d, b, c)
+                new_edges.add(pair)
+                touched[[a, b, c, d]] = True
+            else:
+                continue
+        else:
+            continue
+        touched[[a, b, c]] = True
+        changed += 1
+    F = moved[F][~drop]
+    return changed, F[~(F == np.roll(F, 1, axis=1)).any(axis=1)]
+
+
+def _improves(V: Points, one: tuple[int, ...], two: tuple[int, ...], old: tuple[int, int], F: IntArray) -> bool:
+    """The flip raises the smaller height of the two faces: each face is flipped out of at most a few times."""
+    return bool(relative_heights(V, np.array([one, two])).min() > relative_heights(V, F[list(old)]).min())
+
+
+def _can_contract(top: Topology, F: IntArray, keep: int, gone: int) -> bool:
+    """The link condition: the two ends share no neighbours but the corners of the faces between them."""
+    near_keep, near_gone = F[(F == keep).any(axis=1)], F[(F == gone).any(axis=1)]
+    shared = np.intersect1d(near_keep, near_gone)
+    between = np.unique(near_keep[(near_keep == gone).any(axis=1)])
+    both_on_border = top.is_boundary[top.FE[(F == keep).any(axis=1)]].any() and top.is_boundary[top.FE[(F == gone).any(axis=1)]].any()
+    on_border_edge = bool(top.is_boundary[top.edge_ids(np.array([[keep, gone]]))[0]])
+    return len(shared) == len(between) and (on_border_edge or not both_on_border)
+
+
+def wind_consistently(V: Points, F: IntArray) -> Mended:
+    """Turn over the smaller part of each component so that neighbours agree, and closed shapes so that they face outward."""
+    top = Topology(F)
+    found = winding(top)
+    turn = found.turn & ~found.one_sided
+    F = np.where(turn[:, None], F[:, ::-1], F)
+    said = [f"turned over {_several(int(turn.sum()), 'face')} so that neighbours agree"] if turn.any() else []
+    inside_out = _inside_out(V, F)
+    if inside_out.any():
+        F = np.where(inside_out[:, None], F[:, ::-1], F)
+        said.append(f"turned over {_several(int(inside_out.sum()), 'face')} of closed parts that faced inward")
+    return V, np.ascontiguousarray(F), "; ".join(said)
+
+
+def _inside_out(V: Points, F: IntArray) -> NDArray[np.bool_]:
+    """(m,) faces of closed components with negative volume that lie in no other closed component's box (those are cavities)."""
+    top = Topology(F)
+    count, label = components(top)
+    closed = np.ones(count, dtype=bool)
+    closed[label[(top.edge_count[top.FE] != 2).any(axis=1)]] = False
+    p = V[F] - V.mean(axis=0)
+    volume = np.bincount(label, weights=np.einsum("ij,ij->i", p[:, 0], np.cross(p[:, 1], p[:, 2])), minlength=count)
+    low, high = np.full((count, 3), np.inf), np.full((count, 3), -np.inf)
+    np.minimum.at(low, label, p.min(axis=1))
+    np.maximum.at(high, label, p.max(axis=1))
+    turn = np.zeros(count, dtype=bool)
+    for k in np.flatnonzero(closed & (volume < 0)):
+        around = closed & (low <= low[k]).all(axis=1) & (high >= high[k]).all(axis=1)
+        around[k] = False
+        turn[k] = not around.any()
+    return turn[label]
+
+
+def part_sheets(V: Points, F: IntArray) -> Mended:
+    """Double vertices so that every edge has two faces at most and every vertex one fan.
+
+    Where an even number of sheets touch along an edge they are parted in pairs that enclose the solid
+    between them; edges whose faces do not pair off are left for `repair`.
+    """
+    top = Topology(F)
+    side = np.arange(3 * len(F))
+    balanced = top.is_nonmanifold & ~unbalanced_edges(top, np.zeros(len(F), dtype=bool))
+    plain = ~balanced[top.FE.ravel()]
+    first = np.full(len(top.E), -1)
+    edge = top.FE.ravel()
+    first[edge[::-1]] = side[::-1]
+    joined = [np.column_stack([first[edge[plain]], side[plain]])]
+    if balanced.any():
+        joined.append(_enclosing_pairs(V, top, balanced))
+    pairs = np.vstack(joined)
+    count, fan = corner_fans(top, np.column_stack([pairs[:, 0] // 3, pairs[:, 0] % 3, pairs[:, 1] // 3, pairs[:, 1] % 3]))
+    source = np.empty(count, dtype=np.int64)
+    source[fan.ravel()] = F.ravel()
+    # The first fan of a vertex keeps its place in the list, so that an intact mesh stays as it is.
+    order = np.argsort(source, kind="stable")
+    again = np.zeros(count, dtype=bool)
+    again[order[1:]] = source[order][1:] == source[order][:-1]
+    if not again.any():
+        return V, F, ""
+    number = source.copy()
+    number[again] = len(V) + np.arange(int(again.sum()))
+    said = f"doubled {_several(int(again.sum()), 'vertex')} where sheets touch (first: vertex {source[again].min()})"
+    return np.vstack([V, V[source[again]]]), number[fan], said
+
+
+def _enclosing_pairs(V: Points, top: Topology, balanced: NDArray[np.bool_]) -> IntArray:
+    """Sides (face * 3 + side) that belong together at each edge of four faces or more, (k, 2)."""
+    flat_edge = top.FE.ravel()
+    forward = forward_sides(top, np.zeros(len(top.F), dtype=bool)).ravel()
+    sides = np.flatnonzero(balanced[flat_edge])
+    sides = sides[np.argsort(flat_edge[sides], kind="stable")]
+    out: list[tuple[int, int]] = []
+    for group in np.split(sides, np.flatnonzero(np.diff(flat_edge[sides])) + 1):
+        u, w = top.E[flat_edge[group[0]]]
+        axis = V[w] - V[u]
+        apex = V[top.F[group // 3, (group % 3 + 2) % 3]] - V[u]
+        across = np.eye(3)[np.argmin(np.abs(axis))]
+        x = np.cross(axis, across)
+        y = np.cross(axis, x)
+        x, y = x / max(np.linalg.norm(x), 1e-300), y / max(np.linalg.norm(y), 1e-300)
+        turn = np.arctan2(apex @ y, apex @ x)
+        # A face that runs along the edge has the solid on its clockwise side: match it with the next
+        # face that way which runs back, as brackets match.
+        order = group[np.argsort(-turn, kind="stable")]
+        waiting: list[int] = []
+        for s in np.concatenate([order, order]).tolist():
+            if forward[s] and s not in waiting and not any(s == a for a, _ in out[-len(group) :]):
+                waiting.append(s)
+            elif not forward[s] and waiting and not any(s == b for _, b in out[-len(group) :]):
+                out.append((waiting.pop(), s))
+    return np.array(out, dtype=np.int64).reshape(-1, 2)
+
+
+def drop_unreferenced(V: Points, F: IntArray) -> Mended:
+    """Drop vertices that no face uses."""
+    used = np.zeros(len(V), dtype=bool)
+    used[F] = True
+    if used.all():
+        return V, F, ""
+    number = np.cumsum(used) - 1
+    said = f"dropped {_several(int((~used).sum()), 'unreferenced vertex')} (first: vertex {np.argmin(used)})"
+    return V[used], number[F], said
