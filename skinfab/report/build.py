@@ -1,0 +1,180 @@
+"""The report as plain values: every figure a script may ask for, in the shape of `report.schema.json`."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from skinfab.electrical import ink_volume, resistance
+from skinfab.errors import RefusedError
+from skinfab.files import atomic_write
+from skinfab.flatten.distortion import Distortion
+from skinfab.material import Material
+from skinfab.patterns.registry import parameters
+from skinfab.pieces import Piece
+from skinfab.placement.sensor import Sensor
+from skinfab.placement.wrap_strain import wrap_strain
+from skinfab.skin import Skin
+
+#: Version of the report's shape.
+SCHEMA = 1
+
+Facts = Mapping[str, Any]
+
+
+def build_report(
+    skin: Skin,
+    distortions: Sequence[Distortion],
+    *,
+    material: Material,
+    gcode: Sequence[Facts] = (),
+    moulds: Sequence[Facts] = (),
+    recipe: Facts | None = None,
+    timing_s: Facts,
+    peak_rss_mb: float,
+    warnings: Sequence[str] = (),
+) -> dict[str, Any]:
+    """Everything `make` found out, as plain JSON values.
+
+    Parameters
+    ----------
+    skin : Skin
+    distortions : sequence of Distortion
+        One a piece, in the order of ``skin.pieces``.
+    material : Material
+        What the sensors' ink and resistance are computed with.
+    gcode : sequence of mappings
+        file, lines, time_s, ink_mm3, bbox_mm ((2, 2) or (2, 3)), arcs.
+    moulds : sequence of mappings
+        file, watertight, cavity_ml.
+    recipe : mapping, optional
+    timing_s : mapping
+        Seconds of each phase, and "total".
+    peak_rss_mb : float
+    warnings : sequence of str
+
+    Returns
+    -------
+    dict
+        Valid by ``report.schema.json``; areas and boundaries of pieces are those of the flat shapes.
+
+    Raises
+    ------
+    RefusedError
+        A value is not finite, so the result behind it cannot be right.
+    """
+    report = {
+        "schema": SCHEMA,
+        "mesh": _mesh(skin),
+        "pieces": [_piece(piece, d) for piece, d in zip(skin.pieces, distortions, strict=True)],
+        "distortion": _overall(skin, distortions),
+        "seam_mm": float(np.linalg.norm(np.subtract(*skin.mesh.V[np.reshape(skin.seams, (-1, 2)).T]), axis=1).sum()),
+        "sensors": [_sensor(skin, sensor, material) for sensor in skin.sensors],
+        "gcode": [_plain(facts) for facts in gcode],
+        "moulds": [_plain(facts) for facts in moulds],
+        "recipe": _plain(recipe or {}),
+        "timing_s": _plain(timing_s),
+        "peak_rss_mb": float(peak_rss_mb),
+        "warnings": list(warnings),
+    }
+    if bad := _not_finite(report, ""):
+        raise RefusedError(f"report: {bad} is not finite; the result was not written")
+    return report
+
+
+def write_report(report: Mapping[str, Any], path: str | Path) -> None:
+    """Write the report as strict JSON (no NaN), whole or not at all."""
+    atomic_write(path, json.dumps(report, indent=1, allow_nan=False, ensure_ascii=False) + "\n")
+
+
+def report_schema() -> dict[str, Any]:
+    """The JSON Schema (draft 2020-12) of a report.
+
+    Examples
+    --------
+    >>> report_schema()["properties"]["schema"]
+    {'const': 1}
+    """
+    text = (resources.files("skinfab") / "report" / "report.schema.json").read_text(encoding="utf-8")
+    schema: dict[str, Any] = json.loads(text)
+    return schema
+
+
+def _mesh(skin: Skin) -> dict[str, Any]:
+    source = skin.source
+    return {
+        "file": source.file,
+        "sha256": source.sha256,
+        "n_vertices": len(skin.mesh.V),
+        "n_faces": len(skin.mesh.F),
+        "units": source.units,
+        "bbox_mm": skin.mesh.bbox.tolist(),
+    }
+
+
+def _piece(piece: Piece, d: Distortion) -> dict[str, Any]:
+    outline = piece.outline
+    return {
+        "id": piece.id,
+        "n_faces": len(piece.F),
+        "area_mm2": piece.area,
+        "distortion": {"mean": d.mean, "p95": d.p95, "p99": d.p99, "max": d.max},
+        "flipped": d.flipped,
+        "overlap_mm2": d.overlap_mm2,
+        "boundary_mm": float(np.linalg.norm(outline - np.roll(outline, -1, axis=0), axis=1).sum()),
+    }
+
+
+def _overall(skin: Skin, distortions: Sequence[Distortion]) -> dict[str, float]:
+    """Mean, 99 % quantile and maximum of d over all pieces, weighted by area on the object."""
+    if not skin.pieces:
+        return {"mean": 4.0, "p99": 4.0, "max": 4.0}
+    d = np.concatenate([each.d for each in distortions])
+    area = np.concatenate([skin.mesh.face_areas[piece.faces] for piece in skin.pieces])
+    order = np.argsort(d)
+    share = np.cumsum(area[order]) / area.sum()
+    p99 = d[order[min(int(np.searchsorted(share, 0.99)), len(d) - 1)]]
+    return {"mean": float(np.average(d, weights=area)), "p99": float(p99), "max": float(d.max())}
+
+
+def _sensor(skin: Skin, sensor: Sensor, material: Material) -> dict[str, Any]:
+    length = sensor.path.length
+    r = resistance(length, material.ink)
+    strain = wrap_strain(skin.mesh, skin.piece(sensor.piece), sensor.path)
+    return {
+        "id": sensor.id,
+        "kind": sensor.pattern.kind,
+        "piece": sensor.piece,
+        "params": _plain(parameters(sensor.pattern)),
+        "length_mm": length,
+        # The pads are ink too, though no current runs their whole length.
+        "ink_mm3": ink_volume(sensor.printed_path.length, material.ink),
+        "resistance_kohm": {"low": r.low, "median": r.median, "high": r.high},
+        "wrap_strain": {"mean": strain.mean, "max": strain.max},
+        "channel": sensor.channel,
+    }
+
+
+def _plain(value: Any) -> Any:
+    """The same value in the types JSON knows: arrays and tuples as lists, NumPy numbers as numbers, paths as text."""
+    if isinstance(value, Mapping):
+        return {str(key): _plain(each) for key, each in value.items()}
+    if isinstance(value, np.ndarray | np.generic):
+        return _plain(value.tolist())
+    if isinstance(value, list | tuple):
+        return [_plain(each) for each in value]
+    return value.as_posix() if isinstance(value, Path) else value
+
+
+def _not_finite(value: Any, where: str) -> str:
+    """Where in the report the first number lies that is none; "" when there is none."""
+    if isinstance(value, dict):
+        return next((bad for key, each in value.items() if (bad := _not_finite(each, f"{where}.{key}".lstrip(".")))), "")
+    if isinstance(value, list):
+        return next((bad for k, each in enumerate(value) if (bad := _not_finite(each, f"{where}[{k}]"))), "")
+    return where if isinstance(value, float) and not np.isfinite(value) else ""

@@ -1,0 +1,180 @@
+"""report.html: one file with everything one takes to the lab; it needs no network and runs no script."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Mapping, Sequence
+from html import escape
+from pathlib import Path
+from typing import Any
+
+from skinfab.errors import InputError
+from skinfab.files import atomic_write
+
+_MEDIA_TYPES = {".png": "image/png", ".svg": "image/svg+xml"}
+
+_STYLE = """
+body { font: 15px/1.45 system-ui, sans-serif; color: #1a1a1a; max-width: 68rem; margin: 2rem auto; padding: 0 1rem; }
+h1 { font-size: 1.6rem; margin-bottom: .2rem; } h2 { font-size: 1.15rem; margin: 2rem 0 .5rem; border-bottom: 1px solid #ccc; }
+table { border-collapse: collapse; font-variant-numeric: tabular-nums; } caption { text-align: left; color: #555; padding-bottom: .3rem; }
+th, td { padding: .2rem .7rem .2rem 0; text-align: left; vertical-align: top; } th { border-bottom: 1px solid #999; font-weight: 600; }
+td.n, th.n { text-align: right; } tr:nth-child(even) td { background: #f6f6f6; }
+figure { margin: 1rem 0; } img { max-width: 100%; } figcaption { color: #555; }
+.warning { background: #fff4d6; border-left: 4px solid #d99a00; padding: .4rem .8rem; margin: .4rem 0; }
+li { margin: .25rem 0; } code { overflow-wrap: anywhere; } .table { overflow-x: auto; }
+@media print { body { margin: 0; max-width: none; } h2 { break-after: avoid; } tr, figure { break-inside: avoid; } }
+"""
+
+
+def write_html(
+    report: Mapping[str, Any], path: str | Path, *, pictures: Mapping[str, Path] | None = None, registration: Sequence[str] = ()
+) -> None:
+    """Write the report for people.
+
+    Parameters
+    ----------
+    report : mapping
+        As `build_report` gives it.
+    path : path
+    pictures : mapping of caption to path, optional
+        PNG or SVG files; they go into the page itself.
+    registration : sequence of str
+        How to find the G-code's origin on the mould, a step each.
+
+    Raises
+    ------
+    InputError
+        A picture is neither PNG nor SVG, or cannot be read; the page cannot be written.
+    """
+    name = report["mesh"]["file"]
+    parts = [
+        "<!doctype html>",
+        '<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width">',
+        f"<title>Skin for {escape(name)}</title><style>{_STYLE}</style></head><body>",
+        f"<h1>Skin for {escape(name)}</h1>",
+        _summary(report),
+        *(f'<p class="warning">{escape(warning)}</p>' for warning in report["warnings"]),
+        *(_figure(caption, Path(picture)) for caption, picture in (pictures or {}).items()),
+        _section("Pieces", _pieces(report)),
+        _section("Sensors", _sensors(report)),
+        _section("G-code", _gcode(report)),
+        _section("Moulds", _moulds(report)),
+        _section("Recipe", _recipe(report["recipe"])),
+        _section("Registration: where the G-code's origin lies", _steps(registration)),
+        _section("Provenance", _provenance(report)),
+        "</body></html>",
+    ]
+    atomic_write(path, "\n".join(part for part in parts if part) + "\n")
+
+
+def _summary(report: Mapping[str, Any]) -> str:
+    d, mesh = report["distortion"], report["mesh"]
+    size = " × ".join(f"{high - low:.1f}" for low, high in zip(*mesh["bbox_mm"], strict=True))
+    return (
+        f"<p>{mesh['n_faces']:,} faces, {size} mm; {len(report['pieces'])} flat pieces, {report['seam_mm']:.0f} mm of seams, "
+        f"{len(report['sensors'])} sensors. Distortion d: mean {d['mean']:.4f}, 99 % of the area under {d['p99']:.4f}, "
+        f"largest {d['max']:.4f} (4 is perfect).</p>"
+    )
+
+
+def _pieces(report: Mapping[str, Any]) -> str:
+    rows = [
+        [
+            p["id"],
+            f"{p['n_faces']:,}",
+            f"{p['area_mm2']:.1f}",
+            f"{p['boundary_mm']:.1f}",
+            *(f"{p['distortion'][key]:.4f}" for key in ("mean", "p95", "p99", "max")),
+            str(p["flipped"]),
+            f"{p['overlap_mm2']:.3g}",
+        ]
+        for p in report["pieces"]
+    ]
+    head = ["piece", "#faces", "#area, mm²", "#outline, mm", "#d mean", "#d 95 %", "#d 99 %", "#d max", "#flipped", "#overlap, mm²"]
+    return _table(head, rows, "Areas and outlines are those of the flat pieces.")
+
+
+def _sensors(report: Mapping[str, Any]) -> str:
+    rows = [
+        [
+            str(s["channel"]),
+            s["id"],
+            s["kind"],
+            s["piece"],
+            ", ".join(f"{key} = {value:g}" for key, value in s["params"].items()),
+            f"{s['length_mm']:.1f}",
+            f"{s['ink_mm3']:.1f}",
+            f"{s['resistance_kohm']['median']:.0f} ({s['resistance_kohm']['low']:.0f} – {s['resistance_kohm']['high']:.0f})",
+            f"{100 * s['wrap_strain']['mean']:.2f} / {100 * s['wrap_strain']['max']:.2f}",
+        ]
+        for s in report["sensors"]
+    ]
+    head = ["#channel", "sensor", "kind", "piece", "parameters, mm", "#length, mm", "#ink, mm³", "#resistance, kΩ", "#wrap strain, %"]
+    return _table(head, rows, "Resistance: median, and the interval of nine prints in ten. Wrap strain: mean / largest, from flat to worn.")
+
+
+def _gcode(report: Mapping[str, Any]) -> str:
+    rows = []
+    for g in report["gcode"]:
+        low, high = g["bbox_mm"]
+        box = ", ".join(f"{axis} {a:.1f} … {b:.1f}" for axis, a, b in zip("XYZ", low, high, strict=False))
+        rows.append([g["file"], f"{g['lines']:,}", str(g["arcs"]), f"{g['time_s'] / 60:.1f}", f"{g['ink_mm3']:.1f}", box])
+    return _table(["file", "#lines", "#arcs", "#time, min", "#ink, mm³", "extent on the bed, mm"], rows)
+
+
+def _moulds(report: Mapping[str, Any]) -> str:
+    rows = [[m["file"], "yes" if m["watertight"] else "NO", f"{m['cavity_ml']:.2f}"] for m in report["moulds"]]
+    return _table(["file", "watertight", "#cavity, ml"], rows)
+
+
+def _recipe(recipe: Mapping[str, Any]) -> str:
+    """The steps as a list, what to weigh as a table; whatever else the recipe holds by its name."""
+    rows = [
+        [batch["layer"], component, f"{grams:.2f}"]
+        for batch in recipe.get("batches", [])
+        for component, grams in {**batch["weigh_g"], "together": batch["mass_g"]}.items()
+    ]
+    rest = {key: value for key, value in recipe.items() if key not in ("batches", "steps")}
+    words = ", ".join(f"{escape(key.replace('_', ' '))}: {escape(str(value))}" for key, value in rest.items())
+    parts = [_steps(recipe.get("steps", ())), _table(["layer", "component", "#weigh, g"], rows), f"<p>{words}</p>" if words else ""]
+    return "\n".join(part for part in parts if part)
+
+
+def _provenance(report: Mapping[str, Any]) -> str:
+    mesh, timing = report["mesh"], report["timing_s"]
+    phases = ", ".join(f"{escape(name)} {seconds:.2f}" for name, seconds in timing.items())
+    return (
+        f"<p>Made from {escape(mesh['file'])}, read in {escape(mesh['units'])}, SHA-256 <code>{escape(mesh['sha256'])}</code>. "
+        f"Seconds: {phases}. Peak memory {report['peak_rss_mb']:.0f} MB.</p>"
+    )
+
+
+def _section(title: str, body: str) -> str:
+    return f"<h2>{escape(title)}</h2>\n{body}" if body else ""
+
+
+def _steps(steps: Sequence[str]) -> str:
+    return "<ol>" + "".join(f"<li>{escape(step)}</li>" for step in steps) + "</ol>" if steps else ""
+
+
+def _table(head: Sequence[str], rows: Sequence[Sequence[str]], caption: str = "") -> str:
+    """A table; a heading that begins with # is of a column of numbers."""
+    if not rows:
+        return ""
+    marks = [' class="n"' if title.startswith("#") else "" for title in head]
+    top = "".join(f"<th{mark}>{escape(title.removeprefix('#'))}</th>" for mark, title in zip(marks, head, strict=True))
+    body = "\n".join("<tr>" + "".join(f"<td{m}>{escape(cell)}</td>" for m, cell in zip(marks, row, strict=True)) + "</tr>" for row in rows)
+    note = f"<caption>{escape(caption)}</caption>" if caption else ""
+    return f'<div class="table"><table>{note}<thead><tr>{top}</tr></thead><tbody>\n{body}\n</tbody></table></div>'
+
+
+def _figure(caption: str, picture: Path) -> str:
+    media_type = _MEDIA_TYPES.get(picture.suffix.lower())
+    if media_type is None:
+        raise InputError(f"{picture}: a page shows PNG and SVG, not {picture.suffix!r}")
+    try:
+        data = base64.b64encode(picture.read_bytes()).decode("ascii")
+    except OSError as fault:
+        raise InputError(f"{picture}: {fault.strerror}") from fault
+    # As an image, an SVG runs no script and fetches nothing.
+    return f'<figure><img alt="{escape(caption)}" src="data:{media_type};base64,{data}"><figcaption>{escape(caption)}</figcaption></figure>'

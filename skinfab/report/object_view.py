@@ -1,0 +1,142 @@
+"""The object in space, its pieces coloured, its seams and sensors drawn where they can be seen."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from skinfab.pieces import Piece
+from skinfab.placement.locate import Locator
+from skinfab.placement.sensor import Sensor
+from skinfab.report.raster import rasterise, visible_points
+from skinfab.skin import Skin
+
+FloatArray = NDArray[np.float64]
+
+#: One colour a piece, light enough for black lines on it; pieces beyond the last begin again.
+PIECE_COLOURS = np.array(
+    [
+        [0.55, 0.75, 0.93],
+        [0.99, 0.75, 0.44],
+        [0.62, 0.85, 0.58],
+        [0.95, 0.62, 0.62],
+        [0.78, 0.69, 0.90],
+        [0.84, 0.71, 0.62],
+        [0.96, 0.72, 0.86],
+        [0.78, 0.80, 0.45],
+        [0.50, 0.85, 0.85],
+        [0.80, 0.80, 0.80],
+    ]
+)
+SEAM_COLOUR = (0.75, 0.05, 0.05)
+SENSOR_COLOUR = (0.08, 0.08, 0.10)
+
+_SUPERSAMPLING = 2
+#: How far a line may lie behind the surface it is drawn on and still be seen, as a fraction of the object's diagonal.
+_SLACK = 0.004
+#: Pixels between the object and the picture's edge.
+_BORDER = 6
+
+
+@dataclass(frozen=True)
+class View:
+    """Where one looks from: degrees about z, and degrees above the horizon."""
+
+    azimuth: float
+    elevation: float
+
+    def axes(self) -> FloatArray:
+        """Right, down and away as rows, (3, 3)."""
+        a, e = np.radians([self.azimuth, self.elevation])
+        away = -np.array([np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)])
+        right = np.array([-np.sin(a), np.cos(a), 0.0])
+        return np.stack([right, np.cross(away, right), away])
+
+
+def piece_colour(k: int) -> FloatArray:
+    """Colour of the k-th piece, (3,) RGB."""
+    colour: FloatArray = PIECE_COLOURS[k % len(PIECE_COLOURS)]
+    return colour
+
+
+def object_image(skin: Skin, view: View, *, width: int, height: int) -> FloatArray:
+    """The object as it is seen from one side, as large as fits the picture.
+
+    Parameters
+    ----------
+    skin : Skin
+    view : View
+    width, height : int, pixels
+
+    Returns
+    -------
+    (height, width, 3) float
+        RGB, 0 to 1, on white.
+    """
+    columns, rows = width * _SUPERSAMPLING, height * _SUPERSAMPLING
+    axes = view.axes()
+    seen = skin.mesh.V[skin.mesh.topology.used_vertices] @ axes.T
+    low, high = seen.min(axis=0), seen.max(axis=0)
+    border = _BORDER * _SUPERSAMPLING
+    scale = min((n - 2 * border) / max(size, np.finfo(float).tiny) for n, size in zip((columns, rows), (high - low)[:2], strict=True))
+    shift = np.array([columns, rows, 0]) / 2 - scale * (low + high) / 2
+
+    def project(points: FloatArray) -> FloatArray:
+        return scale * points @ axes.T + shift
+
+    face, depth = rasterise(project(skin.mesh.V), skin.mesh.F, shape=(rows, columns))
+    image = np.append(_shaded_faces(skin, view), [[1.0, 1.0, 1.0]], axis=0)[face]  # -1, no face, is the white at the end
+    slack = _SLACK * scale * float(np.linalg.norm(high - low))
+    lines = [(SENSOR_COLOUR, sensor_points(skin, sensor, spacing=0.5 / scale)) for sensor in skin.sensors]
+    for colour, points in [(SEAM_COLOUR, _seam_points(skin, 0.5 / scale)), *lines]:
+        _dot(image, visible_points(project(points), depth, slack=slack), colour)
+    return image.reshape(height, _SUPERSAMPLING, width, _SUPERSAMPLING, 3).mean(axis=(1, 3))
+
+
+def sensor_points(skin: Skin, sensor: Sensor, *, spacing: float) -> FloatArray:
+    """Points of a sensor's conductor on the object, at most `spacing` mm apart when flat, (k, 3) mm."""
+    piece = skin.piece(sensor.piece)
+    count = max(int(np.ceil(sensor.path.length / spacing)), 1)
+    return on_object(skin, piece, sensor.path.point_at(np.linspace(0, 1, count + 1)))
+
+
+def on_object(skin: Skin, piece: Piece, points: FloatArray) -> FloatArray:
+    """Where points of the flat piece (k, 2) mm lie on the object, (j, 3) mm; those off the piece are left out."""
+    face, weights = Locator(piece.UV, piece.F).barycentric(points)
+    on = face >= 0
+    placed: FloatArray = np.einsum("kc,kcx->kx", weights[on], skin.mesh.V[piece.vertices[piece.F[face[on]]]])
+    return placed
+
+
+def _shaded_faces(skin: Skin, view: View) -> FloatArray:
+    """Colour of each face in the light of a lamp over the left shoulder, (m, 3)."""
+    colours = np.full((len(skin.mesh.F), 3), 0.92)
+    for k, piece in enumerate(skin.pieces):
+        colours[piece.faces] = piece_colour(k)
+    right, down, away = view.axes()
+    lamp = -away - 0.5 * right - 0.6 * down
+    # An open mesh shows its inside too: light both sides alike.
+    brightness = np.abs(skin.mesh.face_normals @ (lamp / np.linalg.norm(lamp)))
+    shaded: FloatArray = colours * (0.45 + 0.55 * brightness)[:, None]
+    return shaded
+
+
+def _seam_points(skin: Skin, spacing: float) -> FloatArray:
+    """Points along the seams at most `spacing` mm apart, (k, 3) mm."""
+    ends = skin.mesh.V[np.reshape(skin.seams, (-1, 2))]
+    length = np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1)
+    count = np.ceil(length / spacing).astype(np.int64) + 1
+    which = np.repeat(np.arange(len(ends)), count)
+    t = (np.arange(len(which)) - np.repeat(np.cumsum(count) - count, count)) / count[which]
+    points: FloatArray = ends[which, 0] + t[:, None] * (ends[which, 1] - ends[which, 0])
+    return points
+
+
+def _dot(image: FloatArray, at: NDArray[np.int64], colour: tuple[float, float, float]) -> None:
+    """Paint pixels and their neighbours."""
+    for rows in (-1, 0, 1):
+        for columns in (-1, 0, 1):
+            row = np.clip(at[:, 0] + rows, 0, image.shape[0] - 1)
+            image[row, np.clip(at[:, 1] + columns, 0, image.shape[1] - 1)] = colour
