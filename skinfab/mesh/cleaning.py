@@ -8,10 +8,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from skinfab.mesh.fans import components, corner_fans, duplicate_faces, forward_sides, relative_heights, unbalanced_edges, winding
+from skinfab.mesh.fans import components, corner_fans, forward_sides, surplus_faces, unbalanced_edges, winding
+from skinfab.mesh.flat_faces import merge_flat_faces
 from skinfab.mesh.stl import weld
 from skinfab.mesh.topology import Topology
-from skinfab.tolerances import DEGENERATE_HEIGHT
 
 Points = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -30,8 +30,8 @@ def drop_repeated_corners(V: Points, F: IntArray) -> Mended:
 
 
 def drop_duplicates(V: Points, F: IntArray) -> Mended:
-    """Of faces with the same corners keep the first."""
-    bad = duplicate_faces(F)
+    """Of faces with the same corners keep the first (see `surplus_faces`)."""
+    bad = surplus_faces(F)
     return V, F[~bad], f"dropped {_several(int(bad.sum()), 'duplicate face')} (first: face {np.argmax(bad)})" if bad.any() else ""
 
 
@@ -55,84 +55,10 @@ def weld_cracks(V: Points, F: IntArray) -> Mended:
     return place, proper, f"joined {_several(len(V) - len(place), 'coincident vertex')}, which closed {_several(closed, 'open edge')}"
 
 
-def merge_flat_faces(V: Points, F: IntArray) -> Mended:
-    """Take faces without area out of the surface without moving it.
-
-    A side of no length is contracted; otherwise the longest side is flipped into the neighbour across
-    it, which then has the flat face's middle corner on its side, or at a border the face is dropped.
-    """
-    F = F.copy()
-    done = 0
-    while True:
-        flat = np.flatnonzero(relative_heights(V, F) <= DEGENERATE_HEIGHT)
-        changed, F = _merge_round(V, F, flat)
-        done += changed
-        if not changed:
-            break
-    return V, F, f"merged {_several(done, 'face')} without area into their neighbours" if done else ""
-
-
-def _merge_round(V: Points, F: IntArray, flat: IntArray) -> tuple[int, IntArray]:
-    """One pass over the flat faces, none touching one already changed in this pass."""
-    if not len(flat):
-        return 0, F
-    top = Topology(F)
-    touched = np.zeros(len(V), dtype=bool)
-    drop = np.zeros(len(F), dtype=bool)
-    moved = np.arange(len(V))
-    changed = 0
-    new_edges: set[tuple[int, int]] = set()
-    for f in flat.tolist():
-        if touched[F[f]].any():
-            continue
-        sides = np.linalg.norm(V[np.roll(F[f], -1)] - V[F[f]], axis=1)
-        k = int(np.argmax(sides))
-        e = int(top.FE[f, k])
-        a, b, c = (int(F[f, (k + s) % 3]) for s in range(3))
-        short = int(np.argmin(sides))
-        if sides[short] == 0:
-            keep, gone = int(F[f, short]), int(F[f, (short + 1) % 3])
-            if _can_contract(top, F, keep, gone):
-                moved[gone] = keep
-                touched[F[(F == gone).any(axis=1) | (F == keep).any(axis=1)]] = True
-                changed += 1
-            continue
-        if top.edge_count[e] == 1:
-            drop[f] = True
-        elif top.edge_count[e] == 2:
-            g = int(top.EF[e, 1] if top.EF[e, 0] == f else top.EF[e, 0])
-            j = int(top.EC[e, 1] if top.EF[e, 0] == f else top.EC[e, 0])
-            d = int(F[g, (j + 2) % 3])
-            pair = (min(c, d), max(c, d))
-            if c == d or touched[d] or pair in new_edges or top.edge_ids(np.array([pair]))[0] >= 0 or F[g, j] != b:
-                continue
-            if _improves(V, (a, d, c), (d, b, c), (f, g), F):
-                F[f], F[g] = (a, d, c), (d, b, c)
-                new_edges.add(pair)
-                touched[[a, b, c, d]] = True
-            else:
-                continue
-        else:
-            continue
-        touched[[a, b, c]] = True
-        changed += 1
-    F = moved[F][~drop]
-    return changed, F[~(F == np.roll(F, 1, axis=1)).any(axis=1)]
-
-
-def _improves(V: Points, one: tuple[int, ...], two: tuple[int, ...], old: tuple[int, int], F: IntArray) -> bool:
-    """The flip raises the smaller height of the two faces: each face is flipped out of at most a few times."""
-    return bool(relative_heights(V, np.array([one, two])).min() > relative_heights(V, F[list(old)]).min())
-
-
-def _can_contract(top: Topology, F: IntArray, keep: int, gone: int) -> bool:
-    """The link condition: the two ends share no neighbours but the corners of the faces between them."""
-    near_keep, near_gone = F[(F == keep).any(axis=1)], F[(F == gone).any(axis=1)]
-    shared = np.intersect1d(near_keep, near_gone)
-    between = np.unique(near_keep[(near_keep == gone).any(axis=1)])
-    both_on_border = top.is_boundary[top.FE[(F == keep).any(axis=1)]].any() and top.is_boundary[top.FE[(F == gone).any(axis=1)]].any()
-    on_border_edge = bool(top.is_boundary[top.edge_ids(np.array([[keep, gone]]))[0]])
-    return len(shared) == len(between) and (on_border_edge or not both_on_border)
+def merge_flat(V: Points, F: IntArray) -> Mended:
+    """Merge faces without area into their neighbours (see `merge_flat_faces`)."""
+    F, merged = merge_flat_faces(V, F)
+    return V, F, f"merged {_several(merged, 'face')} without area into the neighbours" if merged else ""
 
 
 def wind_consistently(V: Points, F: IntArray) -> Mended:

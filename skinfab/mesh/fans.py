@@ -119,14 +119,27 @@ def unbalanced_edges(top: Topology, turn: NDArray[np.bool_]) -> NDArray[np.bool_
     return top.is_nonmanifold & (balance != 0)
 
 
-def duplicate_faces(F: IntArray) -> NDArray[np.bool_]:
-    """(m,) faces with the same three corners as an earlier one, whichever way they are wound."""
+def surplus_faces(F: IntArray) -> NDArray[np.bool_]:
+    """(m,) faces that repeat another one with the same three corners, whichever way they are wound.
+
+    All but the first of a group; but of two that face opposite ways both, where the surface is whole
+    without them (a flap of no thickness): leaving one would make edges of three faces.
+    """
     ordered = np.sort(F, axis=1)
     order = np.lexsort(ordered.T)
     again = (ordered[order][1:] == ordered[order][:-1]).all(axis=1)
-    out = np.zeros(len(F), dtype=bool)
-    out[order[1:][again]] = True
-    return out
+    surplus = np.zeros(len(F), dtype=bool)
+    surplus[order[1:][again]] = True
+    if not again.any():
+        return surplus
+    group = np.empty(len(F), dtype=np.int64)
+    group[order] = np.concatenate([[0], np.cumsum(~again)])
+    size = np.bincount(group)
+    odd = (F[:, 0] < F[:, 1]) ^ (F[:, 1] < F[:, 2]) ^ (F[:, 0] < F[:, 2])
+    opposed = (np.bincount(group, weights=np.where(odd, 1, -1)) == 0) & (size > 1)
+    top = Topology(F)
+    others = top.edge_count[top.FE] - size[group][:, None]
+    return surplus | (opposed[group] & (others != 1).all(axis=1) & (others > 0).any(axis=1))
 
 
 def relative_heights(V: NDArray[np.float64], F: IntArray) -> NDArray[np.float64]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from skinfab.mesh.fans import bowties, components, duplicate_faces, relative_heights, unbalanced_edges, winding
+from skinfab.mesh.fans import bowties, components, relative_heights, surplus_faces, unbalanced_edges, winding
 from skinfab.mesh.faults import Fault, FaultList, edge_of, face, vertex
 from skinfab.mesh.model import Mesh
 from skinfab.mesh.topology import Topology
@@ -74,11 +74,12 @@ def inspect(V: NDArray[np.float64], F: IntArray) -> Inspection:
     >>> found.genus, found.open_edges, found.usable
     ((0,), 0, True)
     """
-    V, F = np.asarray(V, dtype=np.float64).reshape(-1, 3), np.asarray(F, dtype=np.int64).reshape(-1, 3)
+    V = np.asarray(V, dtype=np.float64).reshape(-1, 3)
+    F = np.asarray(F, dtype=np.int64).reshape(-1, 3)
     faults = FaultList()
-    outside = ((F < 0) | (F >= len(V))).any(axis=1)
+    outside = np.asarray(((F < 0) | (F >= len(V))).any(axis=1))
     faults.look("index out of range", outside, face, "no", "export the mesh again")
-    finite = np.isfinite(V).all(axis=1)
+    finite = np.asarray(np.isfinite(V).all(axis=1))
     faults.look("coordinate not finite", ~finite, vertex, "no", "export the mesh again")
     # A face with a fault above says nothing about shape; keep its place so that numbers stay the file's.
     readable = ~outside
@@ -88,10 +89,10 @@ def inspect(V: NDArray[np.float64], F: IntArray) -> Inspection:
     height[readable] = relative_heights(V, F[readable])
     flat = ~repeated & (height <= DEGENERATE_HEIGHT)
     sliver = ~repeated & ~flat & (height < SLIVER_HEIGHT)
-    duplicate = duplicate_faces(F) & ~repeated
+    duplicate = surplus_faces(F) & ~repeated
     faults.look("degenerate face (a corner twice)", repeated, face, "clean", "dropped")
     faults.look("degenerate face (no area)", flat, face, "clean", "merged into its neighbours")
-    faults.look("duplicate face", duplicate, face, "clean", "dropped, all but the first")
+    faults.look("duplicate face", duplicate, face, "clean", "dropped, one is kept where the surface needs it")
     sound = F[readable & ~repeated & ~duplicate]
     unused = np.ones(len(V), dtype=bool)
     unused[sound] = False
@@ -170,9 +171,7 @@ def _loops(top: Topology, label: IntArray, count: int) -> IntArray:
     return np.bincount(owner, minlength=count)
 
 
-def _genus(
-    top: Topology, label: IntArray, count: int, bowtie: NDArray[np.bool_], one_sided: NDArray[np.bool_]
-) -> tuple[int | None, ...]:
+def _genus(top: Topology, label: IntArray, count: int, bowtie: NDArray[np.bool_], one_sided: NDArray[np.bool_]) -> tuple[int | None, ...]:
     """2 - 2g - b = V - E + F for each component that is an orientable manifold."""
     if not count:
         return ()

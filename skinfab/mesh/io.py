@@ -143,7 +143,7 @@ def _check_ply_header(data: bytes, name: str) -> None:
     for element, count in re.findall(rb"element\s+(\w+)\s+(\d+)", data[:end]):
         if int(count) > len(data) - end:
             raise InputError(
-                f"{name} is cut off: its header claims {int(count)} of {element.decode()!r}, more than the file holds; export the mesh again"
+                f"{name} is cut off: its header claims {int(count)} of {element.decode()!r}, but the file is shorter; export the mesh again"
             )
 
 

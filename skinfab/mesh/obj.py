@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import warnings
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -106,17 +107,17 @@ def _read_bulk(data: bytes) -> _Polygons | None:
     if v_numbers is None or f_numbers is None:
         return None
     values, counts = v_numbers
-    if len(counts) and (counts != counts[0]).any() or (len(counts) and counts[0] not in (3, 4, 6, 7)):
+    corners, sizes = f_numbers
+    if len(counts) and ((counts != counts[0]).any() or counts[0] not in (3, 4, 6, 7)):
         return None
     V = values.reshape(len(counts), -1)[:, :3] if len(counts) else np.zeros((0, 3))
-    corners, sizes = f_numbers
     if (sizes < 3).any():
         return None
     lines = np.arange(1, len(starts) + 1)
     return _Polygons(V, lines[is_v], corners, sizes, lines[is_f], np.cumsum(is_v)[is_f])
 
 
-def _numbers(text: Bytes, starts: IntArray, ends: IntArray, kind: type) -> tuple[NDArray[np.generic], IntArray] | None:
+def _numbers(text: Bytes, starts: IntArray, ends: IntArray, kind: type) -> tuple[NDArray[Any], IntArray] | None:
     """The numbers on the given lines (up to a slash) and how many each has; None if some are no numbers."""
     if not len(starts):
         return np.zeros(0, kind), np.zeros(0, np.int64)
@@ -146,7 +147,7 @@ def _numbers(text: Bytes, starts: IntArray, ends: IntArray, kind: type) -> tuple
     with warnings.catch_warnings():
         warnings.simplefilter("error", DeprecationWarning)
         try:
-            values = np.fromstring(part.tobytes(), dtype=kind, sep=" ")
+            values: NDArray[Any] = np.fromstring(part.tobytes(), dtype=kind, sep=" ")
         except (DeprecationWarning, ValueError):
             return None  # read line by line, which says what is wrong and where
     return (values, counts) if len(values) == counts.sum() else None
@@ -184,7 +185,8 @@ def _read_lines(data: bytes, name: str) -> _Polygons:
 def _logical_lines(data: bytes) -> list[tuple[int, bytes]]:
     """Lines with their numbers, a trailing backslash joining the next one on."""
     out: list[tuple[int, bytes]] = []
-    held, begun = [], 1
+    held: list[bytes] = []
+    begun = 1
     for number, line in enumerate(data.split(b"\n"), start=1):
         stripped = line.rstrip()
         if not held:

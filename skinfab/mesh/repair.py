@@ -16,7 +16,7 @@ _PASSES = (
     cleaning.drop_repeated_corners,
     cleaning.drop_duplicates,
     cleaning.weld_cracks,
-    cleaning.merge_flat_faces,
+    cleaning.merge_flat,
     cleaning.drop_duplicates,
     cleaning.wind_consistently,
     cleaning.part_sheets,
@@ -115,7 +115,9 @@ def require_usable(mesh: Mesh) -> None:
     """
     for fault in inspect(mesh.V, mesh.F).faults:
         if fault.mended_by == "repair":
-            raise InputError(f"{mesh.name} has {_counted(fault.count, fault.kind)} (first: {fault.first}); run again with --repair: {fault.remedy}")
+            raise InputError(
+                f"{mesh.name} has {_counted(fault.count, fault.kind)} (first: {fault.first}); run again with --repair: {fault.remedy}"
+            )
         if fault.mended_by == "no":
             raise InputError(f"{mesh.name}: {_counted(fault.count, fault.kind)} (first: {fault.first}); {fault.remedy}")
     top = mesh.topology

@@ -34,11 +34,8 @@ def parse_stl(data: bytes, name: str) -> tuple[NDArray[np.float64], NDArray[np.i
     InputError
         The file is cut off, or is no STL.
     """
-    if data[:5].lower() == b"solid" and b"vertex" in data[:4096]:
-        corners = _parse_text(data, name)
-    else:
-        corners = _parse_binary(data, name)
-    V, F = weld(corners)
+    is_text = data[:5].lower() == b"solid" and b"vertex" in data[:4096]
+    V, F = weld((_parse_text if is_text else _parse_binary)(data, name))
     return V, F.reshape(-1, 3)
 
 

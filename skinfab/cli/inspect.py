@@ -1,0 +1,91 @@
+"""``skinfab inspect``: what a mesh is, what is wrong with it, and what repair would do."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from skinfab.mesh.inspect import Inspection
+    from skinfab.mesh.io import Loaded
+
+
+_COUNTS = (
+    *("faces", "vertices", "components", "genus", "open_edges", "boundary_loops", "nonmanifold_edges", "nonmanifold_vertices"),
+    *("degenerate_faces", "duplicate_faces", "unreferenced_vertices", "inconsistent_edges", "one_sided_faces", "slivers"),
+)
+
+
+def add_parser(subparsers: Any) -> None:
+    """Declare the command."""
+    p = subparsers.add_parser("inspect", help="say what a mesh is, what is wrong with it and what repair would do")
+    p.add_argument("mesh", type=Path, metavar="MESH", help="OBJ, STL, PLY, OFF or GLB file")
+    p.add_argument("--units", choices=("mm", "cm", "m", "in"), help="unit of the file (default: guessed from its size)")
+    p.add_argument("--scale", type=float, default=1.0, metavar="S", help="multiply all coordinates by S")
+    p.add_argument("--json", action="store_true", help="print one JSON object")
+    p.set_defaults(run=run)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Inspect, print, and refuse a mesh that `skinfab make` could not use without --repair."""
+    from skinfab.mesh.inspect import inspect
+    from skinfab.mesh.io import load_mesh
+    from skinfab.mesh.repair import clean, repair, require_usable
+
+    loaded = load_mesh(args.mesh, units=args.units, scale=args.scale)
+    found = inspect(loaded.mesh.V, loaded.mesh.F)
+    cleaned, done = clean(loaded.mesh)
+    after = inspect(cleaned.V, cleaned.F) if done else found
+    would_do = repair(cleaned)[1] if after.open_edges or not after.usable else []
+    if args.json:
+        _print_json(loaded, found, after, done, would_do)
+    else:
+        _print_table(loaded, found, after, done, would_do)
+    require_usable(cleaned)
+    return 0
+
+
+def _print_json(loaded: Loaded, found: Inspection, after: Inspection, done: list[str], would_do: list[str]) -> None:
+    import json
+    from dataclasses import asdict
+
+    report = {"file": loaded.file, "sha256": loaded.sha256, "units": loaded.units, "scale": loaded.scale, "notes": list(loaded.notes)}
+    report |= asdict(found) | {"closed": found.closed, "usable": after.usable}
+    report["after_cleaning"] = asdict(after) | {"closed": after.closed}
+    report |= {"cleaning_does": done, "repair_would_do": would_do}
+    print(json.dumps(report))
+
+
+def _print_table(loaded: Loaded, found: Inspection, after: Inspection, done: list[str], would_do: list[str]) -> None:
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
+    console = Console(highlight=False)
+    table = Table("", "file", "cleaned", title=Text(loaded.file), title_justify="left")
+    for row in _COUNTS:
+        table.add_row(row.replace("_", " ").replace("nonm", "non-m"), _shown(getattr(found, row)), _shown(getattr(after, row)))
+    for row, unit, digits in (("size_mm", "mm", 1), ("area_mm2", "mm2", 0)):
+        name = row.split("_")[0] + f" ({unit})"
+        table.add_row(name, *(_shown(getattr(which, row), digits) for which in (found, after)))
+    table.add_row("usable", "yes" if found.usable else "no", "yes" if after.usable else "no")
+    console.print(table)
+    for heading, lines in (
+        ("Note", loaded.notes),
+        ("Found", [fault.sentence for fault in found.faults]),
+        ("Cleaning (always done)", done),
+        ("With --repair", would_do),
+    ):
+        for line in lines:
+            console.print(Text(f"{heading}: {line}"), soft_wrap=True)
+
+
+def _shown(value: object, digits: int | None = None) -> str:
+    """A count, a size, or the genus of each component (the first ten)."""
+    if not isinstance(value, tuple):
+        return f"{value:.{digits}f}" if isinstance(value, float) else str(value)
+    if digits is not None:
+        return " x ".join(f"{v:.{digits}f}" for v in value)
+    parts = ["undefined" if v is None else str(v) for v in value[:10]]
+    return ", ".join(parts) + (f", ... ({len(value)})" if len(value) > 10 else "")

@@ -1,0 +1,35 @@
+"""From a file to a mesh that the rest can rely on: read, clean, mend where asked, refuse what is left."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+from skinfab.mesh.io import Loaded, load_mesh
+from skinfab.mesh.repair import clean, repair, require_usable
+
+
+def load_usable(path: str | Path, *, units: str | None = None, scale: float = 1.0, mend: bool = False) -> Loaded:
+    """Read a mesh file and make it fit for use.
+
+    Parameters
+    ----------
+    path, units, scale
+        See `load_mesh`.
+    mend : bool
+        Mend what changes the surface, too (``--repair``).
+
+    Returns
+    -------
+    Loaded
+        A mesh as `require_usable` describes; what was done to it is among the notes.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, or the mesh not be used: names the first offending element.
+    """
+    loaded = load_mesh(path, units=units, scale=scale)
+    mesh, done = (repair if mend else clean)(loaded.mesh)
+    require_usable(mesh)
+    return replace(loaded, mesh=mesh, notes=(*loaded.notes, *done))
