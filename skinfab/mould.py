@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from skinfab.drawings.seam_sides import seam_sides
 from skinfab.errors import InputError, RefusedError
 from skinfab.files import atomic_write
 from skinfab.material import Material
@@ -40,7 +41,9 @@ class CastingMould:
     area_mm2, depth : float
         Of the piece, and of the silicone (mm).
     cavity_ml : float
-        Volume up to `fill_z`, measured on `V` and `F`.
+        Volume up to `fill_z`, measured on `V` and `F`, without the lip.
+    lip_ml : float
+        Volume of the adhesive lips, measured in the same way; only the top layer flows into them.
     marks : (3, 2) float, mm
         The L marks' corner points: lower left, lower right, upper left. The lower left one is what
         the nozzle is jogged to.
@@ -56,6 +59,7 @@ class CastingMould:
     area_mm2: float
     depth: float
     cavity_ml: float
+    lip_ml: float
     marks: NDArray[np.float64]
     warnings: tuple[str, ...]
 
@@ -68,11 +72,19 @@ class CastingMould:
         return is_watertight(self.F)
 
 
-def casting_mould(piece: Piece, *, material: Material, depth: float | None = None, exits: Sequence[ArrayLike] = ()) -> CastingMould:
-    """The mould of one flat piece: floor plate, wall, registration marks, wire slots.
+def casting_mould(
+    piece: Piece,
+    *,
+    material: Material,
+    depth: float | None = None,
+    exits: Sequence[ArrayLike] = (),
+    lips: Sequence[NDArray[np.float64]] = (),
+) -> CastingMould:
+    """The mould of one flat piece: floor plate, wall, registration marks, wire slots, adhesive lips.
 
     The wall fills the darts. Its top is `FREEBOARD_MM` above the silicone, and the slots for the wires end
-    at the silicone's surface, so that nothing runs out.
+    at the silicone's surface, so that nothing runs out. A lip is as thick as the top layer and as wide as the
+    material says: it is glued over the other side of its seam.
 
     Parameters
     ----------
@@ -83,6 +95,8 @@ def casting_mould(piece: Piece, *, material: Material, depth: float | None = Non
         Of the silicone; the material's layers together by default.
     exits : sequence of (2,) float, mm
         Terminals, in the piece frame.
+    lips : sequence of (k, 2) float, mm
+        Runs of the piece's outline, in its direction, that get a lip where there is room.
 
     Raises
     ------
@@ -102,27 +116,35 @@ def casting_mould(piece: Piece, *, material: Material, depth: float | None = Non
     depth = material.depth if depth is None else depth
     if not (np.isfinite(depth) and depth > 0):
         raise InputError(f"the silicone's depth is {depth:g} mm; it must be positive")
-    plan = mould_plan(piece, mould=material.mould, exits=exits)
+    plan = mould_plan(piece, mould=material.mould, exits=exits, lips=lips)
     floor_z = material.mould.floor
     fill_z, top_z = floor_z + depth, floor_z + depth + FREEBOARD_MM
-    V, F = _printable(_solid(plan, floor_z, fill_z, top_z))
+    lip_depth = min(material.layers[-1].depth, depth) if material.layers else depth
+    V, F = _printable(_solid(plan, floor_z, fill_z, top_z, lip_depth))
     if not is_watertight(F):
         raise RefusedError(f"the mould of piece {piece.id} is not watertight; simplify the piece's outline and try again")
-    cavity = _cavity_volume(V, F, plan, floor_z, fill_z)
-    expected = piece.area * depth
-    if not abs(cavity - expected) <= CAVITY_FRACTION * expected:
-        raise RefusedError(
-            f"the mould of piece {piece.id} holds {cavity / 1000:.3f} ml but the piece needs {expected / 1000:.3f} ml "
-            f"(area {piece.area:.1f} mm^2 x {depth:g} mm); check the flat piece for overlaps"
-        )
-    return CastingMould(piece.id, V, F, floor_z, fill_z, top_z, piece.area, depth, cavity / 1000, plan.marks, plan.warnings)
+    cavity, lip = (_hollow(V, F, region, floor_z, fill_z) for region in (plan.block, plan.lip))
+    _require(cavity, piece.area, depth, f"cavity of piece {piece.id}")
+    _require(lip, plan.lip.area, lip_depth, f"lip of piece {piece.id}")
+    return CastingMould(piece.id, V, F, floor_z, fill_z, top_z, piece.area, depth, cavity / 1000, lip / 1000, plan.marks, plan.warnings)
 
 
 def skin_moulds(skin: Skin, *, material: Material) -> list[CastingMould]:
-    """One mould a piece, with a wire slot for either terminal of each of its sensors."""
+    """One mould a piece: a wire slot for either terminal of each sensor, a lip on one side of each seam."""
+    sewn: set[str] = set()
+    lips: dict[int, list[NDArray[np.float64]]] = {}
+    for side in seam_sides(skin.pieces):
+        if side.label and side.label not in sewn and material.mould.lip > 0:
+            sewn.add(side.label)
+            lips.setdefault(side.piece, []).append(side.points)
     return [
-        casting_mould(piece, material=material, exits=[end for s in skin.sensors_on(piece.id) for end in (s.path.start, s.path.end)])
-        for piece in skin.pieces
+        casting_mould(
+            piece,
+            material=material,
+            exits=[end for s in skin.sensors_on(piece.id) for end in (s.path.start, s.path.end)],
+            lips=lips.get(k, []),
+        )
+        for k, piece in enumerate(skin.pieces)
     ]
 
 
@@ -147,13 +169,15 @@ def is_watertight(F: NDArray[np.int64]) -> bool:
     return bool((topology.edge_count == 2).all() and not turn.any())
 
 
-def _solid(plan: MouldPlan, floor_z: float, fill_z: float, top_z: float) -> Any:
+def _solid(plan: MouldPlan, floor_z: float, fill_z: float, top_z: float, lip_depth: float) -> Any:
     """The mould as a manifold3d solid."""
     above = top_z - fill_z  # cuts reach this far past the top, so that no two faces coincide
     plate = _prism(plan.plate, 0.0, floor_z) - _prism(plan.grooves, floor_z / 2, floor_z + above)
     wall = _prism(plan.wall, floor_z / 2, top_z)
     if not plan.slots.is_empty:
         wall -= _prism(plan.slots, fill_z, top_z + above)
+    if not plan.lip.is_empty:
+        wall -= _prism(plan.lip_cut, fill_z - lip_depth, top_z + above)
     return plate + wall
 
 
@@ -176,9 +200,20 @@ def _printable(solid: Any) -> tuple[NDArray[np.float32], NDArray[np.int64]]:
     return V, np.ascontiguousarray(F[np.lexsort(F.T[::-1])])
 
 
-def _cavity_volume(V: NDArray[np.float32], F: NDArray[np.int64], plan: MouldPlan, floor_z: float, fill_z: float) -> float:
-    """What fits in: a block that ends inside the wall, less the mould's own mesh (mm^3)."""
+def _hollow(V: NDArray[np.float32], F: NDArray[np.int64], region: Any, floor_z: float, fill_z: float) -> float:
+    """What fits in: a block over the region, less the mould's own mesh (mm^3)."""
     from manifold3d import Manifold, Mesh64
 
+    if region.is_empty:
+        return 0.0
     mesh = Manifold(Mesh64(V.astype(np.float64), F.astype(np.uint64)))
-    return float((_prism(plan.block, floor_z, fill_z) - mesh).volume())
+    return float((_prism(region, floor_z, fill_z) - mesh).volume())
+
+
+def _require(volume: float, area: float, depth: float, what: str) -> None:
+    expected = area * depth
+    if not abs(volume - expected) <= CAVITY_FRACTION * expected:
+        raise RefusedError(
+            f"the {what} holds {volume / 1000:.3f} ml in its mould but needs {expected / 1000:.3f} ml "
+            f"(area {area:.1f} mm^2 x {depth:g} mm); check the flat piece for overlaps"
+        )

@@ -1,4 +1,4 @@
-"""The casting mould seen from above: cavity, wall, plate, registration marks and wire slots.
+"""The casting mould seen from above: cavity, adhesive lips, wall, plate, registration marks and wire slots.
 
 All regions are shapely polygons in the piece frame (mm), on a grid fine enough for the printer and
 coarse enough for the single precision of an STL file.
@@ -30,10 +30,14 @@ class MouldPlan:
     ----------
     cavity : MultiPolygon
         Where silicone is cast: the piece.
+    lip : MultiPolygon
+        Strips beside the cavity that only the top layer flows into.
+    lip_cut : MultiPolygon
+        The lip as cut: a little wider, so that no film of plastic is left between lip and cavity.
     wall : MultiPolygon
-        Round the cavity, and in its darts.
+        Round the cavity, and in its darts, and under the lip.
     block : MultiPolygon
-        The cavity and the inner half of its wall: what is measured.
+        The cavity and the inner half of its wall, without the lip: what is measured.
     plate : Polygon
         The rectangular floor.
     marks : (3, 2) float, mm
@@ -47,6 +51,8 @@ class MouldPlan:
     """
 
     cavity: MultiPolygon
+    lip: MultiPolygon
+    lip_cut: MultiPolygon
     wall: MultiPolygon
     block: MultiPolygon
     plate: Polygon
@@ -56,7 +62,7 @@ class MouldPlan:
     warnings: tuple[str, ...]
 
 
-def mould_plan(piece: Piece, *, mould: Mould, exits: Sequence[ArrayLike] = ()) -> MouldPlan:
+def mould_plan(piece: Piece, *, mould: Mould, exits: Sequence[ArrayLike] = (), lips: Sequence[NDArray[np.float64]] = ()) -> MouldPlan:
     """Plan a piece's mould.
 
     Parameters
@@ -66,6 +72,8 @@ def mould_plan(piece: Piece, *, mould: Mould, exits: Sequence[ArrayLike] = ()) -
         Its dimensions, from the material profile.
     exits : sequence of (2,) float, mm
         Terminals in the piece frame; each gets a slot in the nearest wall that has the outside behind it.
+    lips : sequence of (k, 2) float, mm
+        Runs of the outline, in its direction, that get an adhesive lip where there is room.
 
     Raises
     ------
@@ -85,9 +93,12 @@ def mould_plan(piece: Piece, *, mould: Mould, exits: Sequence[ArrayLike] = ()) -
     cavity = cavity_region(piece)
     if cavity.is_empty:
         raise InputError(f"piece {piece.id} has no area to cast; flatten it again")
+    lip = _lip_region(piece, cavity, lips, mould)
+    lip_cut = _on_grid(lip.buffer(5 * MOULD_SLIT_MM, join_style="mitre"))
     # Gaps between two outer walls that are narrower than half a wall are filled: nothing cleans them.
     fill = mould.wall / 2
-    outer = _on_grid(cavity.buffer(mould.wall + fill, join_style="mitre", mitre_limit=2).buffer(-fill, join_style="mitre", mitre_limit=2))
+    grown = (cavity | lip).buffer(mould.wall + fill, join_style="mitre", mitre_limit=2)
+    outer = _on_grid(grown.buffer(-fill, join_style="mitre", mitre_limit=2))
     wall = _on_grid(outer - cavity)
     xmin, ymin, xmax, ymax = outer.bounds
     plate = box(xmin - mould.mark, ymin - mould.mark, xmax + mould.mark, ymax + mould.mark)
@@ -98,13 +109,15 @@ def mould_plan(piece: Piece, *, mould: Mould, exits: Sequence[ArrayLike] = ()) -
     slots = [_slot(np.asarray(point, dtype=float), cavity, outer, mould) for point in exits]
     return MouldPlan(
         cavity=cavity,
+        lip=lip,
+        lip_cut=lip_cut,
         wall=wall,
-        block=_on_grid(cavity.buffer(mould.wall / 2)),
+        block=_on_grid(cavity.buffer(mould.wall / 2) - lip),
         plate=plate,
         marks=marks,
         grooves=_on_grid(shapely.union_all(grooves)),
         slots=_on_grid(shapely.union_all(slots)),
-        warnings=_narrow_places(piece, cavity, wall, mould),
+        warnings=(*_narrow_places(piece, cavity, _on_grid(wall - lip_cut), mould), *_short_lips(piece, lip, lips)),
     )
 
 
@@ -123,6 +136,36 @@ def cavity_region(piece: Piece) -> MultiPolygon:
     half = MOULD_SLIT_MM / 2
     healed = outline.buffer(half, join_style="mitre", mitre_limit=5).buffer(-half, join_style="round", quad_segs=1)
     return _on_grid(healed)
+
+
+def _lip_region(piece: Piece, cavity: MultiPolygon, lips: Sequence[NDArray[np.float64]], mould: Mould) -> MultiPolygon:
+    """Strips of the lip's width outside the given runs, a wall away from every other edge and lip."""
+    boundary = shapely.LinearRing(piece.outline)
+    strips: list[BaseGeometry] = []
+    for points in lips:
+        run = shapely.LineString(points)
+        # The outline is counter-clockwise: the outside is on the right, which shapely calls negative.
+        strip: BaseGeometry = run.buffer(-mould.lip, single_sided=True, join_style="mitre", mitre_limit=2)
+        others = boundary - run.buffer(MOULD_SLIT_MM)
+        strip = strip - cavity - shapely.union_all([others, *strips]).buffer(mould.wall)
+        # What is left between two darts may be a splinter that tears off with the skin: it goes. The chinks
+        # that this leaves towards the cavity would be films of plastic: they are filled again.
+        half = mould.wall / 2
+        broad = strip.buffer(-half, join_style="mitre").buffer(half, join_style="mitre")
+        joined = (broad | cavity).buffer(half, join_style="mitre").buffer(-half, join_style="mitre")
+        parts = _on_grid((broad | (joined - cavity)) & strip).geoms
+        strips.append(MultiPolygon([part for part in parts if (part & broad).area > half**2 and part.distance(cavity) < MOULD_SLIT_MM]))
+    return _on_grid(shapely.union_all(strips) - cavity)
+
+
+def _short_lips(piece: Piece, lip: MultiPolygon, lips: Sequence[NDArray[np.float64]]) -> tuple[str, ...]:
+    """Says so where most of the wanted lip has no room."""
+    runs = [shapely.LineString(points) for points in lips]
+    wanted = sum(run.length for run in runs)
+    got = sum((run & lip.buffer(2 * MOULD_SLIT_MM)).length for run in runs)
+    if got >= wanted / 2:
+        return ()
+    return (f"piece {piece.id}: the adhesive lip has room along {got:.0f} of {wanted:.0f} mm of seam; bond the rest edge to edge",)
 
 
 def _triangle_area(piece: Piece) -> float:

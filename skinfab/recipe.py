@@ -58,7 +58,7 @@ class Recipe:
         return plain | {"batches": list(plain["batches"]), "steps": list(plain["steps"])}
 
 
-def recipe(cavities_ml: Mapping[str, float], material: Material) -> Recipe:
+def recipe(cavities_ml: Mapping[str, float], material: Material, *, lips_ml: Mapping[str, float] | None = None) -> Recipe:
     """Weigh out the silicone for a set of moulds.
 
     Parameters
@@ -66,6 +66,8 @@ def recipe(cavities_ml: Mapping[str, float], material: Material) -> Recipe:
     cavities_ml : mapping of piece id to float
         Volume of each mould's cavity over the material's whole depth.
     material : Material
+    lips_ml : mapping of piece id to float, optional
+        Volume of each mould's adhesive lips, which the top layer fills.
 
     Raises
     ------
@@ -91,15 +93,17 @@ def recipe(cavities_ml: Mapping[str, float], material: Material) -> Recipe:
             raise InputError(f"the mould of piece {piece} holds {volume:g} ml; it must be positive")
     if not material.depth > 0:
         raise InputError(f"material {material.name!r} has no layer with a depth; add its [[layers]] to the profile")
-    batches = tuple(_batch(layer, cavities_ml, material) for layer in material.layers)
+    volumes = [{piece: float(v) * layer.depth / material.depth for piece, v in cavities_ml.items()} for layer in material.layers]
+    for piece, extra in (lips_ml or {}).items():
+        volumes[-1][piece] += float(extra)
+    batches = tuple(_batch(layer, each, material) for layer, each in zip(material.layers, volumes, strict=True))
     return Recipe(material.name, material.waste_percent, material.cure_h, material.bond, batches, _steps(batches, material))
 
 
-def _batch(layer: Layer, cavities_ml: Mapping[str, float], material: Material) -> Batch:
+def _batch(layer: Layer, volumes: Mapping[str, float], material: Material) -> Batch:
     parts = sum(layer.base.values())
     if not parts > 0:
         raise InputError(f"layer {layer.name!r} of the material has no base to weigh; give its parts in the profile")
-    volumes = {piece: float(volume) * layer.depth / material.depth for piece, volume in cavities_ml.items()}
     volume = sum(volumes.values())
     mass = volume * layer.density_g_ml * (1 + material.waste_percent / 100)
     base = mass / (1 + sum(layer.additives_wt_percent.values()) / 100)
@@ -128,6 +132,6 @@ def _steps(batches: tuple[Batch, ...], material: Material) -> tuple[str, ...]:
         "home XY, jog the nozzle to the lower left L mark, set Z on the glass.",
         f"Cure for {material.cure_h:g} h without moving the mould, then take the skin out.",
         f"Pierce a stripped wire into each contact pad and lead it out by its slot; seal each with a drop of {material.bond}.",
-        f"Wrap the skin round the object, seam by seam, and bond the seams with {material.bond}.",
+        f"Wrap the skin round the object, seam by seam; lay each lip over its other side and bond it with {material.bond}.",
     ]
     return tuple(steps)

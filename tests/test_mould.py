@@ -175,6 +175,47 @@ def test_closed_dart_is_cast_in_one_and_said_so() -> None:
     assert "touches itself over 15.0 mm" in note
 
 
+def test_lip_is_a_shelf_of_the_top_layers_thickness(tmp_path: Path) -> None:
+    # Along the lower edge of a 40 x 20 plate: 4 mm wide, 0.5 mm thick, a quarter disk of wall cut off either end.
+    piece = PIECES["rectangle"]
+    mould = casting_mould(piece, material=MATERIAL, lips=[np.array([[0.0, 0.0], [40.0, 0.0]])])
+    solid = read_back(mould, tmp_path)
+    assert solid.is_watertight and mould.cavity_ml == pytest.approx(2.0, rel=1e-4)
+    assert mould.lip_ml * 1000 == pytest.approx((40 * 4 - 2 * np.pi * 1.6**2 / 4) * 0.5, rel=0.01)
+    heights = np.array([mould.fill_z - 0.6, mould.fill_z - 0.4, mould.top_z - 0.1])
+    shelf, beyond = ([[20.0, y, z] for z in heights] for y in (-2.0, -4.8))
+    assert filled(solid, shelf).tolist() == [True, False, False]
+    assert filled(solid, beyond).all()
+    # No film of plastic where the lip joins the piece.
+    assert not filled(solid, [[20.0, y, mould.fill_z - 0.2] for y in np.linspace(-0.2, 0.2, 41)]).any()
+    plain = casting_mould(piece, material=MATERIAL)
+    assert plain.lip_ml == 0 and mould.marks[0, 1] == pytest.approx(plain.marks[0, 1] - 4)
+
+
+def test_lip_keeps_a_wall_from_the_other_flank_of_a_dart(tmp_path: Path) -> None:
+    piece = dart_piece(12.0)
+    mould = casting_mould(piece, material=MATERIAL, lips=[np.array([[36.0, 40.0], [30.0, 10.0]])])
+    assert read_back(mould, tmp_path).is_watertight and 0 < mould.lip_ml * 1000 < 30.6 * 4 * 0.5
+    # At y = 38 the dart is 11.2 mm wide: 4 mm of lip from the right, plastic before the left flank.
+    row = [[x, 38.0, mould.fill_z - 0.2] for x in (33.0, 31.0, 30.0, 26.0, 25.0)]
+    assert filled(read_back(mould, tmp_path), row).tolist() == [False, True, True, True, True]
+    narrow = casting_mould(dart_piece(2.0), material=MATERIAL, lips=[np.array([[31.0, 40.0], [30.0, 10.0]])])
+    assert narrow.lip_ml == 0 and "room along 0 of 30 mm" in narrow.warnings[-1]
+
+
+def test_every_lip_on_every_piece_is_sound(tmp_path: Path) -> None:
+    for piece in PIECES.values():
+        ring = np.vstack([piece.outline, piece.outline[:1]])
+        runs = [ring[k : k + 2] for k in range(len(ring) - 1)] if len(ring) < 50 else [ring[:40], ring[100:160]]
+        mould = casting_mould(piece, material=MATERIAL, lips=runs)
+        assert read_back(mould, tmp_path).is_watertight
+        assert mould.cavity_ml * 1000 == pytest.approx(piece.area * 2.5, rel=0.005)
+        assert mould.lip_ml > 0
+        # A lip leaves no film of plastic behind: it adds no dart that cannot be printed.
+        plain = [note for note in casting_mould(piece, material=MATERIAL).warnings if "narrower" in note]
+        assert [note for note in mould.warnings if "narrower" in note] == plain
+
+
 def test_same_mould_same_bytes(tmp_path: Path) -> None:
     for name in ("a.stl", "b.stl"):
         write_mould(casting_mould(PIECES["noisy"], material=MATERIAL), tmp_path / name)

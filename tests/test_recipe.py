@@ -50,6 +50,13 @@ def test_what_is_weighed_is_what_is_poured_and_wasted(volumes: list[float], wast
     assert sum(b.volume_ml for b in made.batches) == pytest.approx(sum(volumes))
 
 
+def test_lips_are_filled_by_the_top_layer_alone() -> None:
+    plain, lipped = recipe({"P1": 10.0, "P2": 2.5}, MATERIAL), recipe({"P1": 10.0, "P2": 2.5}, MATERIAL, lips_ml={"P2": 0.4})
+    assert lipped.batches[0] == plain.batches[0]
+    assert lipped.batches[1].volume_ml == pytest.approx(2.5 + 0.4)
+    assert lipped.batches[1].pour_g == pytest.approx({"P1": 2 * 1.07, "P2": 0.9 * 1.07})
+
+
 def test_steps_are_in_order_and_carry_the_numbers() -> None:
     steps = recipe({"P1": 10.0, "P2": 2.5}, MATERIAL).steps
     order = [
