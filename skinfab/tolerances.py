@@ -72,3 +72,9 @@ REPAIR_HOLE_EDGES = 30
 
 #: Parts smaller than this fraction of the mesh's diagonal are specks of a scan; --repair removes them.
 REPAIR_SPECK = 0.02
+
+#: Cells of the raster on which places for sensors are looked for: a piece of 150 x 150 mm gets steps of 0.25 mm.
+RASTER_CELLS = 360_000
+
+#: Finest step of that raster; found places are verified exactly, so it decides only how tight a fit is found.
+RASTER_STEP_MM = 0.2

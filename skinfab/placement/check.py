@@ -70,17 +70,20 @@ def check_sensor(piece: Piece, sensor: Sensor, others: Iterable[Sensor], *, mate
     return [f.text for f in find_faults(piece, sensor, others, material=material)]
 
 
-def find_faults(
-    piece: Piece,
-    sensor: Sensor,
-    others: Iterable[Sensor],
-    *,
-    material: Material,
-    edges: Curves | None = None,
-    locator: Locator | None = None,
+def find_faults(piece: Piece, sensor: Sensor, others: Iterable[Sensor], *, material: Material) -> list[Finding]:
+    """As `check_sensor`, with amounts."""
+    found = find_misfits(piece, sensor, others, material=material, edges=edge_curves(piece), locator=Locator(piece.UV, piece.F))
+    need = material.gap + sensor.pattern.bead
+    lack = need - own_clearance(sensor, need=need)
+    if lack > CLEARANCE_MM:
+        found.append(Finding(f"{sensor.id} is {_mm(lack)} mm too close to itself", lack))
+    return found
+
+
+def find_misfits(
+    piece: Piece, sensor: Sensor, others: Iterable[Sensor], *, material: Material, edges: Curves, locator: Locator
 ) -> list[Finding]:
-    """As `check_sensor`, with amounts; `edges` and `locator` of the piece save time where many sensors are tried."""
-    edges = edge_curves(piece) if edges is None else edges
+    """What is wrong with where a sensor lies; `edges` and `locator` of the piece are made once for many sensors."""
     curves = Curves.of_segments(sensor.printed_path.segments)
     bead = sensor.pattern.bead
     found = list(_containment(piece, sensor, curves, edges, material.margin, locator))
@@ -91,9 +94,6 @@ def find_faults(
         lack = material.gap + (bead + other.pattern.bead) / 2 - apart
         if lack > CLEARANCE_MM:
             found.append(Finding(f"{sensor.id} is {_mm(lack)} mm too close to {other.id}", lack))
-    lack = material.gap + bead - own_clearance(sensor, need=material.gap + bead)
-    if lack > CLEARANCE_MM:
-        found.append(Finding(f"{sensor.id} is {_mm(lack)} mm too close to itself", lack))
     return found
 
 
@@ -145,10 +145,9 @@ def describe(found: Sequence[Finding]) -> str:
     return "; ".join(f.text for f in worst[:_NAMED]) + more + "; move, turn or shrink them"
 
 
-def _containment(piece: Piece, sensor: Sensor, curves: Curves, edges: Curves, margin: float, locator: Locator | None) -> Iterable[Finding]:
+def _containment(piece: Piece, sensor: Sensor, curves: Curves, edges: Curves, margin: float, locator: Locator) -> Iterable[Finding]:
     bead = sensor.pattern.bead
     apart = distance(curves, edges)
-    locator = Locator(piece.UV, piece.F) if locator is None else locator
     # A path that meets no edge is inside or outside as a whole: one point decides.
     inside = locator.faces([sensor.printed_path.start])[0] >= 0
     lack = bead / 2 + margin - apart

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from skinfab.paths import Arc, Line, Path, Segment
 
@@ -36,7 +36,7 @@ class Curves:
     start, sweep : (n,) float, rad
         As in `paths.Arc`.
     low, high : (n, 2) float, mm
-        Bounding boxes.
+        Boxes that hold the curves.
     """
 
     p0: Array
@@ -71,6 +71,17 @@ class Curves:
     def take(self, index: NDArray[np.int64]) -> Curves:
         """The curves of those indices, in that order."""
         return Curves(*(getattr(self, name)[index] for name in self.__dataclass_fields__))
+
+    def moved(self, *, angle: float, shift: ArrayLike) -> Curves:
+        """Turned about the origin by `angle` rad, then moved by `shift` mm: as ``Path.transformed``, for many tries."""
+        c, s = np.cos(angle), np.sin(angle)
+        turn, to = np.array([[c, s], [-s, c]]), np.asarray(shift, dtype=float)
+        p0, p1, centre = (p @ turn + to for p in (self.p0, self.p1, self.centre))
+        arc = self.radius[:, None] > 0
+        # Whole circles for arcs: wider than need be, which costs a little time and no exactness.
+        low = np.where(arc, centre - self.radius[:, None], np.minimum(p0, p1))
+        high = np.where(arc, centre + self.radius[:, None], np.maximum(p0, p1))
+        return Curves(p0, p1, centre, self.radius, self.start + angle, self.sweep, low, high)
 
 
 def distance(one: Curves, two: Curves) -> float:
@@ -126,8 +137,14 @@ def self_distance(path: Path, *, apart: float) -> float:
     i, j = np.triu_indices(count, 1)
     free = ends[j] - ends[i + 1] >= apart
     best = _bounded_pairs(curves, i[free], j[free])
-    for a, b in zip(i[~free].tolist(), j[~free].tolist(), strict=True):
-        best = min(best, _joined_distance(path.segments[a], path.segments[b], gap=ends[b] - ends[a + 1], apart=apart))
+    parts = [
+        pair
+        for a, b in zip(i[~free].tolist(), j[~free].tolist(), strict=True)
+        for pair in _far_parts(path.segments[a], path.segments[b], gap=ends[b] - ends[a + 1], apart=apart)
+    ]
+    if parts:
+        ones, twos = (Curves.of_segments(side) for side in zip(*parts, strict=True))
+        best = min(best, float(_curve_distance(ones, twos).min()))
     for s in path.segments:
         if isinstance(s, Arc) and s.length > apart:
             # The chord grows up to half a turn and shrinks again: its least value is at one of the two ends.
@@ -137,20 +154,16 @@ def self_distance(path: Path, *, apart: float) -> float:
     return best
 
 
-def _joined_distance(one: Segment, two: Segment, *, gap: float, apart: float) -> float:
-    """Least distance of points of two segments `gap` mm from each other along a path, where that is under `apart`."""
-    best = math.inf
+def _far_parts(one: Segment, two: Segment, *, gap: float, apart: float) -> Iterator[tuple[Segment, Segment]]:
+    """Parts of two segments `gap` mm from each other along a path, `gap` < `apart`, that are `apart` from each other."""
     # Up to here on `one`, all of `two` is far enough along.
     clear = max(one.length + gap - apart, 0.0)
     if clear > 0:
-        best = distance(Curves.of_segments([_part(one, 0.0, clear)]), Curves.of_segments([two]))
-    steps = np.linspace(clear, one.length, 9)
-    for low, high in itertools.pairwise(steps):
+        yield _part(one, 0.0, clear), two
+    for low, high in itertools.pairwise(np.linspace(clear, one.length, 9)):
         skip = apart - gap - (one.length - high)
         if skip < two.length and high > low:
-            near = Curves.of_segments([_part(one, low, high)])
-            best = min(best, distance(near, Curves.of_segments([_part(two, max(skip, 0.0), two.length)])))
-    return best
+            yield _part(one, low, high), _part(two, max(skip, 0.0), two.length)
 
 
 def _part(segment: Segment, low: float, high: float) -> Segment:
