@@ -69,7 +69,7 @@ def write_html(
 
 def _summary(report: Mapping[str, Any]) -> str:
     d, mesh = report["distortion"], report["mesh"]
-    size = " × ".join(f"{high - low:.1f}" for low, high in zip(*mesh["bbox_mm"], strict=True))
+    size = " x ".join(f"{high - low:.1f}" for low, high in zip(*mesh["bbox_mm"], strict=True))
     return (
         f"<p>{mesh['n_faces']:,} faces, {size} mm; {len(report['pieces'])} flat pieces, {report['seam_mm']:.0f} mm of seams, "
         f"{len(report['sensors'])} sensors. Distortion d: mean {d['mean']:.4f}, 99 % of the area under {d['p99']:.4f}, "
@@ -101,16 +101,20 @@ def _sensors(report: Mapping[str, Any]) -> str:
             s["id"],
             s["kind"],
             s["piece"],
-            ", ".join(f"{key} = {value:g}" for key, value in s["params"].items()),
+            ", ".join(f"{key} = {_parameter(value)}" for key, value in s["params"].items()),
             f"{s['length_mm']:.1f}",
             f"{s['ink_mm3']:.1f}",
-            f"{s['resistance_kohm']['median']:.0f} ({s['resistance_kohm']['low']:.0f} – {s['resistance_kohm']['high']:.0f})",
+            f"{s['resistance_kohm']['median']:.0f} ({s['resistance_kohm']['low']:.0f} to {s['resistance_kohm']['high']:.0f})",
             f"{100 * s['wrap_strain']['mean']:.2f} / {100 * s['wrap_strain']['max']:.2f}",
         ]
         for s in report["sensors"]
     ]
     head = ["#channel", "sensor", "kind", "piece", "parameters, mm", "#length, mm", "#ink, mm³", "#resistance, kΩ", "#wrap strain, %"]
     return _table(head, rows, "Resistance: median, and the interval of nine prints in ten. Wrap strain: mean / largest, from flat to worn.")
+
+
+def _parameter(value: float | bool) -> str:
+    return ("no", "yes")[value] if isinstance(value, bool) else f"{value:g}"
 
 
 def _gcode(report: Mapping[str, Any]) -> str:

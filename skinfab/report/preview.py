@@ -131,8 +131,9 @@ def _distortion_image(
 
 def _draw_numbers(axes: Axes, report: Mapping[str, Any]) -> None:
     d, mesh = report["distortion"], report["mesh"]
+    parts = f"{_count(report['pieces'], 'piece')}, {report['seam_mm']:.0f} mm of seams"
     lines = [
-        f"{_printable(mesh['file'])[:40]}: {mesh['n_faces']} faces, {_count(report['pieces'], 'piece')}, {report['seam_mm']:.0f} mm of seams",
+        f"{_printable(mesh['file'])[:40]}: {mesh['n_faces']} faces, {parts}",
         f"d mean {d['mean']:.4f}  p99 {d['p99']:.4f}  max {d['max']:.4f}",
         f"made in {report['timing_s']['total']:.1f} s with {report['peak_rss_mb']:.0f} MB",
         "",

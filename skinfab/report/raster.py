@@ -108,9 +108,11 @@ def _planes(corners: FloatArray) -> FloatArray:
 
 
 def visible_points(points: FloatArray, depth: FloatArray, *, slack: float) -> IntArray:
-    """Rows and columns of those `points` (k, 3) that are no farther than `depth` there by more than `slack`, (j, 2)."""
+    """Rows and columns of those `points` (k, 3) that are no farther than the surface there by more than `slack`, (j, 2)."""
     column, row = np.rint(points[:, 0]).astype(np.int64), np.rint(points[:, 1]).astype(np.int64)
     inside = (row >= 0) & (row < depth.shape[0]) & (column >= 0) & (column < depth.shape[1])
     row, column, z = row[inside], column[inside], points[inside, 2]
-    seen = z <= depth[row, column] + slack
+    behind_it = depth[row, column]
+    # At the outline a hidden point may round to a pixel beyond the surface that hides it.
+    seen = np.isfinite(behind_it) & (z <= behind_it + slack)
     return np.stack([row[seen], column[seen]], axis=1)

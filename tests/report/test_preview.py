@@ -1,0 +1,82 @@
+"""The pictures show what they say: colours where they belong, nothing cut off, the same bytes every time."""
+
+import dataclasses
+import io
+from pathlib import Path
+
+import numpy as np
+import pytest
+from matplotlib.image import imread
+
+from skinfab.flatten.distortion import Distortion
+from skinfab.material import load_material
+from skinfab.progress import PHASES
+from skinfab.report.build import build_report
+from skinfab.report.object_view import SEAM_COLOUR, SENSOR_COLOUR, View, object_image, on_object, piece_colour
+from skinfab.report.preview import draw_preview
+from skinfab.skin import Skin, Source
+
+TIMING = {**dict.fromkeys(PHASES, 0.5), "total": 3.5}
+
+
+def preview(skin: Skin, distortions: list[Distortion], folder: Path) -> np.ndarray:
+    report = build_report(skin, distortions, material=load_material(), timing_s=TIMING, peak_rss_mb=200.0)
+    draw_preview(skin, distortions, report, folder / "preview.png")
+    return imread(io.BytesIO((folder / "preview.png").read_bytes()))[..., :3]
+
+
+def near(image: np.ndarray, colour: tuple[float, ...] | np.ndarray, tolerance: float = 0.02) -> np.ndarray:
+    return (np.abs(image - np.asarray(colour)) < tolerance).all(axis=-1)
+
+
+def test_everything_is_in_the_picture_and_nothing_cut_off(skin: Skin, distortions: list[Distortion], tmp_path: Path) -> None:
+    image = preview(skin, distortions, tmp_path)
+    assert near(image, piece_colour(0)).sum() > 10_000
+    assert near(image, SENSOR_COLOUR).sum() > 1_000
+    assert near(image, SEAM_COLOUR).sum() > 100
+    edge = np.concatenate([image[:3].reshape(-1, 3), image[-3:].reshape(-1, 3), image[:, :3].reshape(-1, 3), image[:, -3:].reshape(-1, 3)])
+    assert (edge == 1).all()
+
+
+def test_the_same_skin_gives_the_same_bytes(skin: Skin, distortions: list[Distortion], tmp_path: Path) -> None:
+    preview(skin, distortions, tmp_path)
+    first = (tmp_path / "preview.png").read_bytes()
+    preview(skin, distortions, tmp_path)
+    assert (tmp_path / "preview.png").read_bytes() == first
+
+
+@pytest.mark.parametrize(("d", "colour"), [(4.0, (0.267, 0.005, 0.329)), (4.1, (0.128, 0.567, 0.551)), (7.0, (0.993, 0.906, 0.144))])
+def test_heat_map_keeps_its_scale(d: float, colour: tuple[float, ...], skin: Skin, distortions: list[Distortion], tmp_path: Path) -> None:
+    one = dataclasses.replace(distortions[0], d=np.full(len(skin.mesh.F), d))
+    right_half = preview(skin, [one], tmp_path)[700:, 1000:]
+    assert near(right_half, colour).mean() > 0.05  # the ends and the middle of viridis over 4.0 to 4.2
+
+
+@pytest.mark.parametrize("file", ["$x_{1}$.obj", "指.obj", "a<b>&\\.obj", "x" * 200 + ".obj"])
+def test_strange_names_are_drawn_as_text(file: str, skin: Skin, distortions: list[Distortion], tmp_path: Path) -> None:
+    preview(dataclasses.replace(skin, source=Source(file, "ab" * 32, "mm", 1.0)), distortions, tmp_path)
+
+
+def test_many_pieces_and_no_sensors(skin: Skin, distortions: list[Distortion], tmp_path: Path) -> None:
+    many = tuple(dataclasses.replace(skin.pieces[0], id=f"P{k}") for k in range(14))
+    preview(dataclasses.replace(skin, pieces=many, sensors=()), distortions * 14, tmp_path)
+
+
+def test_front_and_back_of_a_box(skin: Skin) -> None:
+    # From straight in front (-y) only the wall y = 0 is seen: the seam at its left edge, the first 60 mm of the strip.
+    skin = dataclasses.replace(skin, sensors=skin.sensors[1:])
+    image = object_image(skin, View(azimuth=-90.0, elevation=0.0), width=132, height=112)
+    drawn = ~near(image, (1, 1, 1))
+    rows, columns = np.flatnonzero(drawn.any(axis=1)), np.flatnonzero(drawn.any(axis=0))
+    assert np.ptp(rows) + 1 == pytest.approx(100, abs=2) and np.ptp(columns) + 1 == pytest.approx(120, abs=2)  # 50 x 60 mm
+    red = near(image, SEAM_COLOUR, 0.25)
+    assert red.any() and np.flatnonzero(red.any(axis=0)).max() < columns.min() + 6
+    assert near(image, SENSOR_COLOUR, 0.3).sum() > 50  # C1 is on this wall
+    # From behind, neither.
+    behind = object_image(skin, View(azimuth=90.0, elevation=0.0), width=132, height=112)
+    assert not near(behind, SEAM_COLOUR, 0.25).any() and not near(behind, SENSOR_COLOUR, 0.3).any()
+
+
+def test_points_of_the_flat_piece_find_their_place_on_the_object(skin: Skin) -> None:
+    flat = np.array([[30.0, 10.0], [90.0, 20.0], [150.0, 30.0], [1000.0, 0.0]])
+    np.testing.assert_allclose(on_object(skin, skin.pieces[0], flat), [[30, 0, 10], [60, 30, 20], [30, 60, 30]], atol=1e-9)
