@@ -10,6 +10,7 @@ from typing import Any
 
 from skinfab.errors import InputError
 from skinfab.files import atomic_write
+from skinfab.report.words import count, percent
 
 _MEDIA_TYPES = {".png": "image/png", ".svg": "image/svg+xml"}
 
@@ -71,8 +72,8 @@ def _summary(report: Mapping[str, Any]) -> str:
     d, mesh = report["distortion"], report["mesh"]
     size = " x ".join(f"{high - low:.1f}" for low, high in zip(*mesh["bbox_mm"], strict=True))
     return (
-        f"<p>{mesh['n_faces']:,} faces, {size} mm; {len(report['pieces'])} flat pieces, {report['seam_mm']:.0f} mm of seams, "
-        f"{len(report['sensors'])} sensors. Distortion d: mean {d['mean']:.4f}, 99 % of the area under {d['p99']:.4f}, "
+        f"<p>{mesh['n_faces']:,} faces, {size} mm; {count(report['pieces'], 'flat piece')}, {report['seam_mm']:.0f} mm of seams, "
+        f"{count(report['sensors'], 'sensor')}. Distortion d: mean {d['mean']:.4f}, 99 % of the area under {d['p99']:.4f}, "
         f"largest {d['max']:.4f} (4 is perfect).</p>"
     )
 
@@ -105,7 +106,7 @@ def _sensors(report: Mapping[str, Any]) -> str:
             f"{s['length_mm']:.1f}",
             f"{s['ink_mm3']:.1f}",
             f"{s['resistance_kohm']['median']:.0f} ({s['resistance_kohm']['low']:.0f} to {s['resistance_kohm']['high']:.0f})",
-            f"{100 * s['wrap_strain']['mean']:.2f} / {100 * s['wrap_strain']['max']:.2f}",
+            " / ".join(f"{percent(s['wrap_strain'][key]):.2f}" for key in ("mean", "max")),
         ]
         for s in report["sensors"]
     ]

@@ -14,6 +14,7 @@ from skinfab.files import atomic_write
 from skinfab.flatten.distortion import Distortion
 from skinfab.report.object_view import SEAM_COLOUR, SENSOR_COLOUR, View, object_image, piece_colour
 from skinfab.report.raster import rasterise
+from skinfab.report.words import count, percent
 from skinfab.skin import Skin
 from skinfab.tolerances import PREVIEW_CHORD_MM
 
@@ -131,7 +132,7 @@ def _distortion_image(
 
 def _draw_numbers(axes: Axes, report: Mapping[str, Any]) -> None:
     d, mesh = report["distortion"], report["mesh"]
-    parts = f"{_count(report['pieces'], 'piece')}, {report['seam_mm']:.0f} mm of seams"
+    parts = f"{count(report['pieces'], 'piece')}, {report['seam_mm']:.0f} mm of seams"
     lines = [
         f"{_printable(mesh['file'])[:40]}: {mesh['n_faces']} faces, {parts}",
         f"d mean {d['mean']:.4f}  p99 {d['p99']:.4f}  max {d['max']:.4f}",
@@ -153,7 +154,7 @@ def _draw_numbers(axes: Axes, report: Mapping[str, Any]) -> None:
             *_rows(
                 [
                     f"{s['id'][:7]:<8}{s['kind'][:14]:<15}{s['piece'][:6]:<7}{s['length_mm']:>7.1f}{_interval(s['resistance_kohm']):>20}"
-                    f"{100 * s['wrap_strain']['mean']:>11.2f} %"
+                    f"{percent(s['wrap_strain']['mean']):>11.2f} %"
                     for s in report["sensors"]
                 ]
             ),
@@ -161,9 +162,9 @@ def _draw_numbers(axes: Axes, report: Mapping[str, Any]) -> None:
         ]
     if report["gcode"]:
         time_s, ink = sum(g["time_s"] for g in report["gcode"]), sum(g["ink_mm3"] for g in report["gcode"])
-        lines += [f"G-code: {_count(report['gcode'], 'file')}, {time_s / 60:.1f} min, {ink:.0f} mm3 of ink"]
+        lines += [f"G-code: {count(report['gcode'], 'file')}, {time_s / 60:.1f} min, {ink:.0f} mm3 of ink"]
     if report["moulds"]:
-        lines += [f"Moulds: {_count(report['moulds'], 'file')}, {sum(m['cavity_ml'] for m in report['moulds']):.1f} ml of silicone"]
+        lines += [f"Moulds: {count(report['moulds'], 'file')}, {sum(m['cavity_ml'] for m in report['moulds']):.1f} ml of silicone"]
     axes.set_axis_off()
     # One size for all lines: as large as the longest and their number allow.
     size = min(9.2, 250 / max(len(lines), 1), 640 / max(len(line) for line in lines))
@@ -177,10 +178,6 @@ def _interval(kohm: Mapping[str, float]) -> str:
 def _rows(rows: list[str]) -> list[str]:
     """As many rows as there is room for; the rest by their number."""
     return rows if len(rows) <= _ROWS_OF_TABLE else [*rows[: _ROWS_OF_TABLE - 1], f"... and {len(rows) - _ROWS_OF_TABLE + 1} more"]
-
-
-def _count(things: Sequence[Any], what: str) -> str:
-    return f"{len(things)} {what}{'s' * (len(things) != 1)}"
 
 
 def _printable(text: str) -> str:
