@@ -63,7 +63,8 @@ def _faults_of(move: Move, printer: Printer) -> Iterator[tuple[str, str]]:
 
 def _bounds(move: Move, printer: Printer) -> Iterator[tuple[str, str]]:
     shape = move.shape
-    low, high = shape.bbox if shape else (move.end[:2], move.end[:2])
+    # A straight move that returns from outside is no second fault.
+    low, high = shape.bbox if isinstance(shape, Curve) else (move.end[:2], move.end[:2])
     bed = printer.bed
     for k, axis in enumerate("XYZ"):
         start, end = (bed.origin[k], bed.origin[k] + bed.size[k]) if k < 2 else (0.0, bed.height)
@@ -99,7 +100,10 @@ def _ink(move: Move, printer: Printer) -> Iterator[tuple[str, str]]:
             "split the move, or raise max_e and EXTRUDE_MAXLENGTH alike",
         )
     if move.e < 0 and move.is_planar:
-        yield f"E{move.e:.5f} is negative while the head moves: the pump runs backwards", "make E positive; reverse the motor in the firmware"
+        yield (
+            f"E{move.e:.5f} is negative while the head moves: the pump runs backwards",
+            "make E positive; reverse the motor in the firmware",
+        )
     if move.e > 0 and move.is_planar and move.shape is None:
         yield "it extrudes from an unknown place", "move to the start of the ink with G0 X Y first"
 

@@ -41,9 +41,13 @@ def _print_height(move: Move, printer: Printer) -> Iterator[Finding]:
     if move.start[2] is None or move.end[2] is None:
         yield Finding(move.line, "it extrudes at an unknown height", "set Z before the first ink", move.pattern)
     elif min(move.start[2], move.end[2]) < h.print_min - STEP_XY:
-        yield Finding(move.line, f"it extrudes at Z{min(move.start[2], move.end[2]):.4f}, below the least print height", remedy, move.pattern)
+        yield Finding(
+            move.line, f"it extrudes at Z{min(move.start[2], move.end[2]):.4f}, below the least print height", remedy, move.pattern
+        )
     elif max(move.start[2], move.end[2]) > h.print_max + STEP_XY:
-        yield Finding(move.line, f"it extrudes at Z{max(move.start[2], move.end[2]):.4f}, above the greatest print height", remedy, move.pattern)
+        yield Finding(
+            move.line, f"it extrudes at Z{max(move.start[2], move.end[2]):.4f}, above the greatest print height", remedy, move.pattern
+        )
 
 
 def _lowest(move: Move) -> float | None:
@@ -99,7 +103,9 @@ def crosses_ink(run: Shape, laid: list[Shape], radius: float, *, leaves: bool) -
     return distance((start, run.end), chords(laid)) < radius - PREVIEW_CHORD_MM - STEP_XY
 
 
-def free_length(start: tuple[float, float], direction: tuple[float, float], wanted: float, laid: list[Shape], radius: float, *, leaves: bool) -> float:
+def free_length(
+    start: tuple[float, float], direction: tuple[float, float], wanted: float, laid: list[Shape], radius: float, *, leaves: bool
+) -> float:
     """The longest run from `start`, up to `wanted` mm, in tenths of it, that stays clear of `laid` ink."""
     for tenths in range(10, 0, -1):
         length = wanted * tenths / 10

@@ -6,6 +6,7 @@ deviation (Jeon, "Improving Grbl: cornering algorithm", 2011, as Marlin has it) 
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import dataclass
 
@@ -40,7 +41,9 @@ class _Block:
 def summarise(program: Program, printer: Printer, *, lines: int) -> Summary:
     """The summary of a program that was emitted as a text of `lines` lines."""
     corners: list[tuple[float, float, float]] = []
-    x = y = z = None
+    x: float | None = None
+    y: float | None = None
+    z: float | None = None
     for step in program.steps:
         if isinstance(step, Travel):
             x, y, z = (old if new is None else new for old, new in zip((x, y, z), (step.x, step.y, step.z), strict=True))
@@ -100,7 +103,7 @@ def _run_time(run: list[_Block], printer: Printer) -> float:
     if not run:
         return 0.0
     a = printer.motion.acceleration
-    joints = [0.0, *(_junction_speed(one, two, printer) for one, two in zip(run, run[1:], strict=False)), 0.0]
+    joints = [0.0, *(_junction_speed(one, two, printer) for one, two in itertools.pairwise(run)), 0.0]
     for k in range(len(run) - 1, -1, -1):  # slow down in time for what comes
         joints[k] = min(joints[k], math.sqrt(joints[k + 1] ** 2 + 2 * a * run[k].length))
     for k in range(len(run)):  # and speed up no faster than can be

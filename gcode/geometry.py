@@ -6,10 +6,14 @@ and nothing is computed twice in two ways: an arc here is what the printer is to
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
 
 from skinfab.paths import Arc, Line, Segment
 
@@ -57,12 +61,12 @@ class Straight:
     def split(self, count: int) -> tuple[Straight, ...]:
         """`count` equal parts."""
         points = [self.start, *(self.point_at(k / count) for k in range(1, count)), self.end]
-        return tuple(Straight(a, b) for a, b in zip(points, points[1:], strict=False))
+        return tuple(Straight(a, b) for a, b in itertools.pairwise(points))
 
     @property
     def segment(self) -> Line:
         """The same as a path segment, for previews."""
-        return Line(self.start, self.end)
+        return Line(np.array(self.start), np.array(self.end))
 
 
 @dataclass(frozen=True)
@@ -127,7 +131,7 @@ class Curve:
     def split(self, count: int) -> tuple[Curve, ...]:
         """`count` equal parts about the same centre."""
         points = [self.start, *(self.point_at(k / count) for k in range(1, count)), self.end]
-        return tuple(Curve(a, b, self.centre, self.clockwise) for a, b in zip(points, points[1:], strict=False))
+        return tuple(Curve(a, b, self.centre, self.clockwise) for a, b in itertools.pairwise(points))
 
     def chords(self, tolerance: float) -> tuple[Straight, ...]:
         """Chords that leave the arc by at most `tolerance` mm."""
@@ -137,7 +141,7 @@ class Curve:
     @property
     def segment(self) -> Arc:
         """The same as a path segment, for previews."""
-        return Arc(self.centre, self.radius, self._angle(self.start), self.sweep)
+        return Arc(np.array(self.centre), self.radius, self._angle(self.start), self.sweep)
 
     def _angle(self, point: Point) -> float:
         return math.atan2(point[1] - self.centre[1], point[0] - self.centre[0])
@@ -166,6 +170,5 @@ def joined_box(boxes: list[Box]) -> Box:
     )
 
 
-def _pair(point: object) -> Point:
-    x, y = point  # type: ignore[misc]
-    return float(x), float(y)
+def _pair(point: NDArray[np.float64]) -> Point:
+    return float(point[0]), float(point[1])

@@ -42,7 +42,10 @@ PREAMBLE = (
 HOMING = {
     "xyz": (("; home xyz: Z too. Home before the mould lies on the bed: a probe would dip into the wet silicone.",), ("G28",)),
     "xy": (
-        ("; home xy: Z is left alone, for a probe at bed centre would dip into the wet mould.", "; Before the start set Z = 0 by hand: nozzle on the glass, then zero Z."),
+        (
+            "; home xy: Z is left alone, for a probe at bed centre would dip into the wet mould.",
+            "; Before the start set Z = 0 by hand: nozzle on the glass, then zero Z.",
+        ),
         ("G28 X Y",),
     ),
     "none": (("; home none: before the start set X, Y and Z by hand; the places below are the machine's.",), ()),

@@ -148,7 +148,11 @@ class _Planner:
         shapes = [*([Straight(inked, shapes[0].start)] if inked != shapes[0].start else []), *shapes]
         entry = self._run(name, "start overrun", shapes[0].start, (-dx, -dy), process.overrun_start, leaves=False)
         slow = motion.straight_speed
-        self.steps += [Comment(f"pattern {name}"), Travel(*entry, speed=motion.travel_speed), Travel(z=self.printer.heights.print, speed=motion.z_speed)]
+        self.steps += [
+            Comment(f"pattern {name}"),
+            Travel(*entry, speed=motion.travel_speed),
+            Travel(z=self.printer.heights.print, speed=motion.z_speed),
+        ]
         if entry != shapes[0].start:
             self.steps.append(Travel(*shapes[0].start, speed=slow))
         if pump.prime:
@@ -208,7 +212,9 @@ class _Planner:
             self.steps += [Extrude(part, self.area * part.length, speed) for part in shape.split(count)]
             self.laid.append(shape)
         for (why, nominal, speed), times in sorted(lowered.items()):
-            self.warnings.append(f"{name}: speed lowered from {nominal:.4g} to {speed:.4g} mm/s on {times} segment{'s' * (times > 1)} by {why}")
+            self.warnings.append(
+                f"{name}: speed lowered from {nominal:.4g} to {speed:.4g} mm/s on {times} segment{'s' * (times > 1)} by {why}"
+            )
 
 
 def allowed_speed(shape: Shape, area: float, printer: Printer) -> tuple[float, str]:

@@ -211,4 +211,6 @@ def _check(printer: Printer, where: str) -> None:
     if not p.flow_min <= p.flow_max:
         raise InputError(f"{where}, pump: flow_min {p.flow_min:g} is above flow_max {p.flow_max:g} mm^3/s")
     if p.prime != p.retract:
-        raise InputError(f"{where}, pump: prime {p.prime:g} and retract {p.retract:g} mm^3 differ; a pattern must end as it began, make them equal")
+        raise InputError(
+            f"{where}, pump: prime {p.prime:g} and retract {p.retract:g} mm^3 differ; a pattern must end as it began, make them equal"
+        )

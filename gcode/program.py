@@ -117,7 +117,9 @@ class Program:
             elif isinstance(step, Extrude):
                 if x is None or y is None or math.dist((x, y), step.shape.start) > JOIN_MM:
                     at = "an unknown place" if x is None or y is None else f"({x:.4f}, {y:.4f})"
-                    raise InputError(f"step {k} (Extrude) of program {self.name} starts at {step.shape.start}, the head is at {at}; travel there first")
+                    raise InputError(
+                        f"step {k} (Extrude) of program {self.name} starts at {step.shape.start}, the head is at {at}; travel there first"
+                    )
                 x, y = step.shape.end
 
     @property

@@ -187,7 +187,9 @@ class _Head:
         centre = self._centre(command, end) if command.code in ("G2", "G3") else None
         if centre is not None or e or any(axis in command.words for axis in "XYZ"):
             start = (self.place[0], self.place[1], self.place[2])
-            self.moves.append(Move(command.line, start, (end[0], end[1], end[2]), centre, command.code == "G2", e, self.speed, self.pattern))
+            self.moves.append(
+                Move(command.line, start, (end[0], end[1], end[2]), centre, command.code == "G2", e, self.speed, self.pattern)
+            )
         self.place = end
 
     def _ink(self, command: Command) -> float:
@@ -195,7 +197,9 @@ class _Head:
         if value is None:
             return 0.0
         if self.undone:
-            self._fault(self.undone, f"G90 after M83 makes E absolute again, so E from line {command.line} on is misread", "put M83 after G90")
+            self._fault(
+                self.undone, f"G90 after M83 makes E absolute again, so E from line {command.line} on is misread", "put M83 after G90"
+            )
             self.undone = None
         value *= self.scale
         if self.relative_e:
@@ -204,7 +208,9 @@ class _Head:
             e, self.e = value - self.e, value
         if e and not self.cold and not self.warned_cold:
             self.warned_cold = True
-            self._fault(command, "it extrudes before M302 P1: a printer without a heater drops the ink in silence", "put M302 P1 at the start")
+            self._fault(
+                command, "it extrudes before M302 P1: a printer without a heater drops the ink in silence", "put M302 P1 at the start"
+            )
         return e
 
     def _centre(self, command: Command, end: list[float | None]) -> Point:

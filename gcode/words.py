@@ -82,11 +82,11 @@ def read_commands(text: str) -> Iterator[Command]:
             raise InputError(f"line {line}: cannot read {_shown(body)}; a command begins with G, M or T and a number")
         letter, number, sub = found.groups()
         code = f"{letter.upper()}{int(number)}{sub or ''}"
-        words = _words(body[found.end() :], line) if code in READ else {}
+        words = _words(body[found.end() :], line, flags=code == "G28") if code in READ else {}
         yield Command(line, code, words, comment.strip(), len(raw.encode()))
 
 
-def _words(rest: str, line: int) -> dict[str, float | None]:
+def _words(rest: str, line: int, *, flags: bool) -> dict[str, float | None]:
     words: dict[str, float | None] = {}
     at = 0
     while at < len(rest):
@@ -94,6 +94,8 @@ def _words(rest: str, line: int) -> dict[str, float | None]:
         if not found:
             raise InputError(f"line {line}: cannot read {_shown(rest[at:])}; a word is one letter and one number")
         letter = found[1].upper()
+        if found[2] is None and rest[found.end() : found.end() + 1].isalpha() and not flags:
+            raise InputError(f"line {line}: cannot read {_shown(rest[at:].strip())}; a word is one letter and one number")
         value = None if found[2] is None else float(found[2])
         if value is not None and not math.isfinite(value):
             raise InputError(f"line {line}: {letter} is not a finite number; write it out in millimetres")

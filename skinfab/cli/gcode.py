@@ -1,0 +1,112 @@
+"""`skinfab gcode`: the G-code of a skin's sensors, or a check of any G-code file."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from dataclasses import asdict
+from typing import TYPE_CHECKING
+
+from skinfab.errors import RefusedError
+
+if TYPE_CHECKING:
+    from gcode.trace import Finding
+    from gcode.write import PieceGcode
+
+#: Findings shown before the rest is only counted; --json lists all.
+SHOWN = 20
+
+
+def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add the command and its options."""
+    p = subparsers.add_parser(
+        "gcode",
+        help="G-code for the sensors, or check a G-code file",
+        usage="skinfab gcode SKIN -o DIR [--arcs native|lines] [--printer NAME|FILE] [--json]\n"
+        "       skinfab gcode check FILE [--printer NAME|FILE] [--json]",
+        description="Write PIECE.gcode for every piece of a skin that carries sensors, or check any G-code file by the same rules.",
+        epilog="A skin file that is itself named 'check' is given as ./check.",
+    )
+    p.add_argument("words", nargs="+", metavar="SKIN | check FILE", help="a skin document, or the word check and a G-code file")
+    p.add_argument("-o", "--output", metavar="DIR", help="folder for the G-code files, made if it is not there")
+    p.add_argument("--arcs", choices=("native", "lines"), help="arcs as G2 and G3, or as chords (default: what the printer draws)")
+    p.add_argument("--printer", metavar="NAME|FILE", help="printer profile (default: the skin's own; for check: ender5plus-vipro)")
+    p.add_argument("--json", action="store_true", help="print one JSON object and nothing else")
+    p.set_defaults(run=run, wrong_usage=p.error)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Do what the first word asks for."""
+    if args.words[0] == "check":
+        return _check(args)
+    return _write(args)
+
+
+def _write(args: argparse.Namespace) -> int:
+    if len(args.words) != 1:
+        args.wrong_usage(f"one skin document is expected, not {len(args.words)}")
+    if args.output is None:
+        args.wrong_usage("-o DIR is missing: the folder for the G-code files")
+    from gcode.printer import load_printer
+    from gcode.write import write_skin
+    from skinfab.document import load_skin
+
+    skin = load_skin(args.words[0])
+    printer = load_printer(args.printer) if args.printer else None
+    written = write_skin(skin, args.output, arcs=args.arcs, printer=printer)
+    if args.json:
+        print(json.dumps({"gcode": [_described(w) for w in written]}))
+        return 0
+    for w in written:
+        s = w.summary
+        x, y = w.plan.offset
+        print(f"{w.file}: {s.lines} lines, {s.arcs} arcs, {s.ink_mm3:.1f} mm^3 of ink, {s.time_s / 60:.1f} min")
+        print(f"  the piece's lower left corner is at X{x:.4f} Y{y:.4f}")
+        for warning in w.plan.warnings:
+            print(f"  {warning}")
+    return 0
+
+
+def _described(written: PieceGcode) -> dict[str, object]:
+    return {
+        "piece": written.piece,
+        "file": str(written.file),
+        **asdict(written.summary),
+        "offset_mm": written.plan.offset,
+        "warnings": written.plan.warnings,
+    }
+
+
+def _check(args: argparse.Namespace) -> int:
+    if len(args.words) != 2:
+        args.wrong_usage("check takes one G-code file")
+    for name in ("output", "arcs"):
+        if getattr(args, name) is not None:
+            args.wrong_usage(f"check reads a file and writes none, so it takes no {'-o' if name == 'output' else '--arcs'}")
+    from gcode.check import check_text
+    from gcode.printer import DEFAULT_PRINTER, load_printer
+    from gcode.words import read_text
+    from skinfab.errors import InputError
+
+    file = args.words[1]
+    printer = load_printer(args.printer or DEFAULT_PRINTER)
+    text = read_text(file)
+    try:
+        findings = check_text(text, printer)
+    except InputError as fault:
+        raise InputError(f"{file}: {fault}") from fault
+    if args.json:
+        print(json.dumps({"file": file, "printer": printer.name, "ok": not findings, "findings": [asdict(f) for f in findings]}))
+        return RefusedError.exit_status if findings else 0
+    if not findings:
+        print(f"{file}: nothing found; it may be printed on {printer.name}")
+        return 0
+    _show(findings)
+    raise RefusedError(f"{file} has {len(findings)} fault{'s' * (len(findings) > 1)} on {printer.name}; correct them before printing")
+
+
+def _show(findings: tuple[Finding, ...]) -> None:
+    for finding in findings[:SHOWN]:
+        print(finding)
+    if len(findings) > SHOWN:
+        print(f"... and {len(findings) - SHOWN} more (--json lists all)")

@@ -1,0 +1,113 @@
+"""`skinfab gcode` from the command line: files, findings, exit statuses."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from gcode.words import read_text
+from skinfab.cli.main import main
+from skinfab.document import save_skin
+from skinfab.mesh.model import Mesh
+from skinfab.patterns.contact_spiral import ContactSpiral
+from skinfab.pieces import Piece
+from skinfab.placement.sensor import Sensor
+from skinfab.skin import Skin, Source
+
+CORNERS = np.array([[0, 0], [80, 0], [80, 60], [0, 60]], dtype=float)
+
+
+def skin_with(*sensors: Sensor) -> Skin:
+    faces = np.array([[0, 1, 2], [0, 2, 3]])
+    mesh = Mesh(np.c_[CORNERS, np.zeros(4)], faces)
+    piece = Piece("P1", np.array([0, 1]), np.arange(4), faces, CORNERS)
+    return Skin(mesh, Source("plate.obj", "0" * 64, "mm", 1.0), np.empty((0, 2), dtype=np.int64), (piece,), sensors)
+
+
+@pytest.fixture
+def document(tmp_path: Path) -> Path:
+    save_skin(skin_with(Sensor("C1", "P1", ContactSpiral(n=3, x=2.0, b=3.0, l=6.0, s=22.0), 20, 30, 0.3, 0)), tmp_path / "a.skin")
+    return tmp_path / "a.skin"
+
+
+def test_writes_what_its_own_check_accepts(document: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["gcode", str(document), "-o", str(tmp_path / "out")]) == 0
+    file = tmp_path / "out/P1.gcode"
+    assert str(file) in capsys.readouterr().out
+    assert "\nG3 " in read_text(file)
+    assert main(["gcode", "check", str(file)]) == 0
+    assert "nothing found" in capsys.readouterr().out
+
+
+def test_json_and_arcs_as_lines(document: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["gcode", str(document), "-o", str(tmp_path / "out"), "--arcs", "lines", "--printer", "generic-marlin", "--json"]) == 0
+    (entry,) = json.loads(capsys.readouterr().out)["gcode"]
+    assert entry["piece"] == "P1" and entry["arcs"] == 0 and entry["offset_mm"] == [60.0, 70.0]
+    assert entry.keys() >= {"file", "lines", "time_s", "ink_mm3", "bbox_mm", "warnings"}
+    text = read_text(entry["file"])
+    assert text.count("\n") == entry["lines"] and "\nG3 " not in text
+
+
+def test_check_refuses_a_foreign_file_line_by_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "foreign.gcode"
+    file.write_text("G90\nG0 Z10 F250\nG0 X20 Y20 F250\nG0 Z2.3 F250\nG1 X30 Y20 E-40 F250\nG02 X50 Y20 I11 J0 E-80 F250\n")
+    assert main(["gcode", "check", str(file)]) == 3
+    said = capsys.readouterr()
+    assert "line 5: E-40.00000 is negative" in said.out and "line 6: its end lies 2.0000 mm off" in said.out
+    assert said.err.count("\n") == 1 and "faults on Creality" in said.err
+    assert main(["gcode", "check", str(file), "--json"]) == 3
+    answer = json.loads(capsys.readouterr().out)
+    assert answer["ok"] is False and {f["line"] for f in answer["findings"]} == {5, 6}
+
+
+def test_long_lists_are_cut_on_a_terminal_only(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "many.gcode"
+    file.write_text("G90\nM83\nM302 P1\nG0 Z10 F300\n" + "G0 X400 Y1\nG0 X1 Y1\n" * 30)
+    assert main(["gcode", "check", str(file)]) == 3
+    assert "... and 10 more" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("content", "says"),
+    [
+        (b"\0\1\2", "binary file"),
+        (b"G1 X1\nG1 XNaN", "line 2: cannot read 'XNaN'"),
+        (b"G1 X1\n\xff\xfe\xfd", "line 2: cannot read"),
+        (b"G1 X" + 400 * b"9", "not a finite number"),
+        (b"G1 X" + 10_000 * b"1", "characters long"),
+    ],
+)
+def test_hostile_files_get_one_sentence(tmp_path: Path, capsys: pytest.CaptureFixture[str], content: bytes, says: str) -> None:
+    file = tmp_path / "bad.gcode"
+    file.write_bytes(content)
+    assert main(["gcode", "check", str(file)]) == 1
+    said = capsys.readouterr()
+    assert says in said.err and said.err.count("\n") == 1 and not said.out
+
+
+def test_refused_and_unusable_skins(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    save_skin(skin_with(Sensor("C1", "P1", ContactSpiral(n=3, x=2.0, b=3.0, l=6.0, s=22.0), 300, 30, 0.3, 0)), tmp_path / "out.skin")
+    assert main(["gcode", str(tmp_path / "out.skin"), "-o", str(tmp_path / "g")]) == 3
+    assert "pattern C1" in capsys.readouterr().err and not (tmp_path / "g").exists()
+    save_skin(skin_with(), tmp_path / "none.skin")
+    assert main(["gcode", str(tmp_path / "none.skin"), "-o", str(tmp_path / "g")]) == 1
+    assert main(["gcode", str(tmp_path / "absent.skin"), "-o", str(tmp_path / "g")]) == 1
+    assert main(["gcode", "check", str(tmp_path / "absent.gcode")]) == 1
+    assert main(["gcode", "check", "x.gcode", "--printer", "nonesuch"]) == 1
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["a.skin"],
+        ["a.skin", "b.skin", "-o", "d"],
+        ["check"],
+        ["check", "a", "b"],
+        ["check", "a", "-o", "d"],
+        ["check", "a", "--arcs", "lines"],
+        [],
+    ],
+)
+def test_wrong_usage(words: list[str]) -> None:
+    assert main(["gcode", *words]) == 2

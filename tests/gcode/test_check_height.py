@@ -1,0 +1,52 @@
+"""Low travel: overruns pass, anything that could drag through ink does not."""
+
+import pytest
+
+from gcode.check import check_text
+from gcode.check_height import bead_radius, crosses_ink, free_length
+from gcode.geometry import Straight
+from gcode.printer import Printer
+from gcode.trace import trace
+
+HEAD = "G21\nG90\nM83\nM302 P1\nG0 Z10 F300\nG0 X100 Y100 F6000\nG0 Z1.6 F300\n"
+LINE = "G1 X110 Y100 E40 F240\n"
+
+
+@pytest.mark.parametrize(
+    ("body", "says"),
+    [
+        (LINE + "G0 X111 Y100\nG0 Z10 F300", None),  # an end overrun of 1 mm
+        (LINE + "G1 E-4 F400\nG0 X111 Y100 F240\nG0 Z10 F300", None),  # and after a retract
+        ("G0 X101 Y100\nG1 X110 Y100 E36 F240", None),  # a start overrun
+        ("G0 X101 Y100\nG1 E4 F400\nG1 X110 Y100 E36 F240", None),
+        (LINE + "G0 X112 Y100\nG0 Z10 F300", "below the travel height"),  # too long for one
+        (LINE + "G0 X120 Y120\nG1 X130 Y120 E40", "below the travel height"),  # on to the next pattern
+        (LINE + "G0 X130 Y130 Z10 F300", "below the travel height"),  # lifting on the way
+        (LINE + "G0 X109 Y100\nG0 Z10 F300", "drags the nozzle"),  # back over its own bead
+        (LINE + "G1 X110 Y101 E4\nG1 X109 Y101 E4\nG0 X109 Y100.2\nG0 Z10 F300", "drags the nozzle"),
+        (LINE + "G0 X111 Y100\nG0 X111 Y99.5\nG0 Z10 F300", "below the travel height"),  # leads nowhere
+    ],
+)
+def test_low_travel(body: str, says: str | None, printer: Printer) -> None:
+    faults = [f.what for f in check_text(HEAD + body, printer)]
+    assert (not faults) if says is None else any(says in what for what in faults), faults
+
+
+def test_an_entry_through_an_earlier_pattern(printer: Printer) -> None:
+    entry = "G0 Z10 F300\nG0 X105 Y100.8 F6000\nG0 Z1.6 F300\nG0 X105 Y99.8 F240\nG1 X105 Y90 E39.2 F240"
+    assert any("drags" in f.what for f in check_text(HEAD + LINE + entry, printer))
+
+
+def test_bead_radius_is_that_of_a_round_bead(printer: Printer) -> None:
+    move = trace(HEAD + LINE).moves[-1]
+    assert bead_radius(move, printer) == pytest.approx(0.785 / 2, abs=1e-3)
+    assert bead_radius(None, printer) == 0.0
+
+
+def test_free_length_stops_before_ink() -> None:
+    wall = Straight((1.0, -5.0), (1.0, 5.0))
+    assert free_length((0.0, 0.0), (1.0, 0.0), 2.0, [wall], 0.3, leaves=False) == pytest.approx(0.6)
+    assert free_length((0.0, 0.0), (-1.0, 0.0), 2.0, [wall], 0.3, leaves=False) == 2.0
+    assert free_length((0.9, 0.0), (1.0, 0.0), 2.0, [wall], 0.3, leaves=False) == 0.0
+    assert not crosses_ink(Straight((1.0, 5.0), (1.0, 6.0)), [wall], 0.3, leaves=True)
+    assert crosses_ink(Straight((1.0, 5.0), (1.0, 4.0)), [wall], 0.3, leaves=True)

@@ -1,0 +1,77 @@
+"""Profiles: the bundled ones are sound, and every way to get one wrong is told by name."""
+
+from pathlib import Path
+
+import pytest
+
+from gcode.printer import bundled_printers, load_printer
+from skinfab.errors import InputError
+
+SOURCE = (Path(__file__).parents[2] / "gcode/profiles/ender5plus-vipro.toml").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("name", bundled_printers())
+def test_bundled_profiles_load(name: str) -> None:
+    printer = load_printer(name)
+    assert printer.name and printer.pump.prime == printer.pump.retract
+
+
+def test_the_default_is_the_papers_machine() -> None:
+    printer = load_printer()
+    assert (printer.bed_size, printer.bed.height) == ((350.0, 350.0), 400.0)
+    assert printer.heights.print_min == 1.5 <= printer.heights.print <= printer.heights.print_max == 1.7
+    assert printer.pump.e_per_mm3 * 0.484 == pytest.approx(4.0)  # its extrusion factor, mm of E per mm
+
+
+def test_a_file_of_ones_own(tmp_path: Path) -> None:
+    own = tmp_path / "mine.toml"
+    own.write_text(SOURCE + "\n[cleaning]\nx = 5\ny = 6\nseconds = 3\ninitial_extrude = 2.5\n", encoding="utf-8")
+    cleaning = load_printer(own).cleaning
+    assert cleaning is not None and (cleaning.x, cleaning.initial_extrude) == (5.0, 2.5)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "says"),
+    [
+        ("travel_speed = 100", "travelspeed = 100", "motion: unknown field 'travelspeed'"),
+        ("travel_speed = 100", "", "motion: field 'travel_speed' is missing"),
+        ("travel_speed = 100", "travel_speed = '100'", "travel_speed is '100'; it must be a number"),
+        ("travel_speed = 100", "travel_speed = nan", "travel_speed is nan"),
+        ("travel_speed = 100", "travel_speed = 0", "travel_speed is 0; it must be more than zero"),
+        ("travel_speed = 100", "travel_speed = true", "travel_speed is True"),
+        ("arcs = true", "arcs = 1", "arcs is 1; it must be true or false"),
+        ('home = "xy"', 'home = "zyx"', "home is 'zyx'; it must be one of xyz, xy, none"),
+        ('home = "xy"', "home = 3", "home is 3; it must be a text"),
+        ("size = [350, 350]", "size = [350]", "two numbers"),
+        ("size = [350, 350]", "size = [350, -1]", "bed, size is -1"),
+        ("[bed]", "bed = 3\n[bad]", "unknown field 'bad'"),
+        ("retract = 0.5", "retract = 0.4", "make them equal"),
+        ("travel = 10", "travel = 1.65", "heights"),
+        ("flow_min = 0.5", "flow_min = 50", "flow_min 50 is above flow_max"),
+        ("[bed]", "[bed", "not a TOML file"),
+    ],
+)
+def test_wrong_profiles_say_where(tmp_path: Path, old: str, new: str, says: str) -> None:
+    assert old in SOURCE
+    own = tmp_path / "mine.toml"
+    own.write_text(SOURCE.replace(old, new, 1), encoding="utf-8")
+    with pytest.raises(InputError) as fault:
+        load_printer(own)
+    assert says in str(fault.value)
+
+
+def test_a_table_that_is_none(tmp_path: Path) -> None:
+    own = tmp_path / "mine.toml"
+    own.write_text("cleaning = 3\n" + SOURCE, encoding="utf-8")
+    with pytest.raises(InputError, match="must be a table"):
+        load_printer(own)
+
+
+def test_unknown_names_list_the_known(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="there are ender5plus-vipro, generic-marlin"):
+        load_printer("ender3")
+    with pytest.raises(InputError, match="no printer profile at"):
+        load_printer(tmp_path / "absent.toml")
+    (tmp_path / "folder.toml").mkdir()
+    with pytest.raises(InputError, match="cannot read"):
+        load_printer(tmp_path / "folder.toml")

@@ -1,0 +1,129 @@
+"""Foreign text followed as Marlin follows it."""
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from gcode.geometry import Curve
+from gcode.trace import Move, trace
+from skinfab.errors import InputError
+
+START = "G21\nG90\nM83\nM302 P1\nG0 X0 Y0 Z1 F600\n"
+
+
+def last(text: str) -> Move:
+    return trace(START + text).moves[-1]
+
+
+def test_absolute_relative_and_renamed_places() -> None:
+    assert last("G91\nG1 X2 Y3\nG1 X2").end == (4.0, 3.0, 1.0)
+    assert last("G1 X5\nG92 X0\nG1 X2").end == (7.0, 0.0, 1.0)
+    assert last("G92 X10\nG92 X20\nG1 X21").end == (1.0, 0.0, 1.0)
+    assert last("G20\nG1 X1 F60").end == (25.4, 0.0, 1.0)
+    assert last("G20\nG1 X1 F60").speed == pytest.approx(25.4)
+
+
+def test_ink_is_a_difference_in_absolute_mode() -> None:
+    t = trace("M302 P1\nG0 X0 Y0 F60\nG1 X1 E2\nG1 X2 E5\nG92 E0\nG1 X3 E1\nM83\nG1 X4 E1")
+    assert [m.e for m in t.moves] == [0.0, 2.0, 3.0, 1.0, 1.0]
+    assert not t.faults
+
+
+@pytest.mark.parametrize(("code", "radius", "middle"), [("G2", 5, 1), ("G3", 5, -1), ("G2", -5, 9), ("G3", -5, -9)])
+def test_radius_form_takes_the_side_that_marlin_takes(code: str, radius: float, middle: float) -> None:
+    t = trace(START + f"{code} X6 Y0 R{radius}")
+    shape = t.moves[-1].shape
+    assert isinstance(shape, Curve)
+    assert shape.point_at(0.5) == pytest.approx((3, middle))
+    assert ["R form" in f.what for f in t.faults] == [True]
+
+
+@given(st.floats(0.1, 50), st.floats(-3, 3), st.floats(0.1, 3.0))
+def test_both_forms_of_an_arc_agree(radius: float, start: float, sweep: float) -> None:
+    p, q = ((radius * math.cos(a), radius * math.sin(a)) for a in (start, start + sweep))
+    head = f"M302 P1\nG0 X{p[0]:.9f} Y{p[1]:.9f} F60\nG3 X{q[0]:.9f} Y{q[1]:.9f} "
+    by_centre = trace(head + f"I{-p[0]:.9f} J{-p[1]:.9f}").moves[-1].shape
+    by_radius = trace(head + f"R{radius:.9f}").moves[-1].shape
+    assert isinstance(by_centre, Curve) and isinstance(by_radius, Curve)
+    assert by_radius.length == pytest.approx(by_centre.length, rel=1e-3)
+
+
+def test_places_nobody_knows() -> None:
+    t = trace("G28\nG0 Z5 F60\nG0 X1 Y2")
+    assert t.moves[0].end == (None, None, 5.0) and t.moves[0].shape is None
+    assert t.moves[1].end == (1.0, 2.0, 5.0)
+    assert t.homes_z == (1,)
+    assert trace("G28 X Y").homes_z == ()
+
+
+def test_patterns_are_named_by_comments() -> None:
+    t = trace("; pattern C7\nG0 X0 Y0 F60")
+    assert t.moves[0].pattern == "C7"
+
+
+def faults(text: str) -> list[tuple[int, str]]:
+    return [(f.line, f.what) for f in trace(text).faults]
+
+
+def test_g90_after_m83_is_found_where_ink_follows() -> None:
+    (found,) = faults(START + "G90\nG0 X1\nG1 X2 E1\nG1 X3 E1")
+    assert found[0] == 6 and "E from line 8" in found[1]
+    assert not faults(START + "G90\nM83\nG1 X2 E1")
+    assert not faults(START + "G1 X2 E1\nG90\nG0 X3")
+    assert faults(START + "G91\nG90\nG1 X2 E1")  # the usual trap of a lift in between
+
+
+def test_ink_without_m302() -> None:
+    (found,) = faults("M83\nG0 X0 Y0 F60\nG1 X1 E1\nG1 X2 E1")
+    assert found[0] == 3 and "M302" in found[1]
+    assert faults("M302 P0\nM83\nG1 E1 F60")
+    assert not faults("M302 S0\nM83\nG1 E1 F60")
+
+
+def test_long_lines_and_z_on_arcs() -> None:
+    assert "97 bytes" in faults(START + "G1 X1 ;" + 90 * "x")[0][1]
+    assert not faults(START + "G1 X1 ;" + 89 * "x")
+    assert "Z on an arc" in faults(START + "G2 X2 Y0 Z2 I1")[0][1]
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("G2 X1 Y1 I1 J0", "line 1: an arc begins at an unknown place"),
+        (START + "G2 X1 Y1", "line 6: G2 has neither I nor J"),
+        (START + "G2 X1 Y1 I0 J0", "line 6: the arc's centre is its start"),
+        (START + "G2 X0 Y0 R5", "line 6: an arc by R"),
+        (START + "G1 X", "line 6: X has no number"),
+        (START + "G1 X1 F0", "line 6: F is 0"),
+        (START + "G1 X1 F-5", "line 6: F is -5"),
+        (START + "G18", "line 6: G18 is not supported"),
+        (START + "G5 X1 Y1 I0 J0 P0 Q0", "line 6: G5 is not supported"),
+        (START + "G92", "line 6: G92 without an axis"),
+    ],
+)
+def test_motions_that_cannot_be_followed(text: str, says: str) -> None:
+    with pytest.raises(InputError, match=says):
+        trace(text)
+
+
+words = st.builds(
+    "{}{}".format, st.sampled_from("XYZIJREFPS"), st.sampled_from(["", "0", "1", "-1", "1e999", "NaN", "1.5", "999999999", "-.0001"])
+)
+lines = st.builds(
+    "{} {}".format,
+    st.sampled_from(["G0", "G1", "G2", "G3", "G4", "G5", "G20", "G21", "G28", "G90", "G91", "G92", "M82", "M83", "M302", "M104"]),
+    st.lists(words, max_size=5).map(" ".join),
+)
+
+
+@given(st.lists(lines, max_size=12))
+def test_hostile_text_gives_moves_or_one_sentence(text: list[str]) -> None:
+    try:
+        t = trace("\n".join(text))
+    except InputError as fault:
+        said = str(fault)
+        assert "\n" not in said and said.startswith("line ")
+    else:
+        assert all(math.isfinite(v) for m in t.moves for v in (*m.end, m.e) if v is not None)

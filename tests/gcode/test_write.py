@@ -1,0 +1,85 @@
+"""Nothing faulty reaches the disk, and what does is the same bytes every time."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from gcode.marlin import emit
+from gcode.plan import Plan
+from gcode.printer import Printer
+from gcode.program import Extrude
+from gcode.write import checked_text, write_gcode, write_skin
+from skinfab.errors import InputError, RefusedError
+from skinfab.mesh.model import Mesh
+from skinfab.pieces import Piece
+from skinfab.skin import Skin, Source
+
+
+def test_written_whole_with_its_summary(planned: Plan, printer: Printer, tmp_path: Path) -> None:
+    target = tmp_path / "P1.gcode"
+    summary = write_gcode(planned.program, target, printer=printer)
+    assert target.read_text() == emit(planned.program, printer)
+    assert (summary.lines, summary.arcs) == (target.read_text().count("\n"), 6)
+    lines = write_gcode(planned.program, target, printer=printer, arcs="lines")
+    assert lines.arcs == 0 and lines.lines > summary.lines
+    assert lines.ink_mm3 == pytest.approx(summary.ink_mm3)
+    assert target.read_text() == emit(planned.program, printer, arcs="lines")
+
+
+def test_a_faulty_program_is_refused_and_not_written(planned: Plan, printer: Printer, tmp_path: Path) -> None:
+    target = tmp_path / "P1.gcode"
+    small = replace(printer, bed=replace(printer.bed, size=(150.0, 350.0)))
+    with pytest.raises(
+        RefusedError, match=r"piece P1 was not written: line \d+, pattern C\d: it reaches X.* the bed ends at X150.0000; move"
+    ) as fault:
+        write_gcode(planned.program, target, printer=small)
+    assert fault.value.exit_status == 3 and "more like this" in str(fault.value)
+    assert list(tmp_path.iterdir()) == []
+    fast = [replace(s, speed=100.0) if isinstance(s, Extrude) else s for s in planned.program.steps]
+    with pytest.raises(RefusedError, match="lower F to"):
+        write_gcode(replace(planned.program, steps=tuple(fast)), target, printer=printer)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_printer_without_arcs_refuses_native_ones(planned: Plan, printer: Printer) -> None:
+    flat = replace(printer, arcs=False)
+    with pytest.raises(RefusedError, match="--arcs lines"):
+        checked_text(planned.program, printer=flat)
+    assert "\nG3 " not in checked_text(planned.program, printer=flat, arcs="lines")[0]
+
+
+@pytest.fixture
+def skin(make_piece: Callable, make_sensor: Callable, hairpin) -> Skin:  # type: ignore[no-untyped-def]
+    mesh = Mesh(np.array([[0, 0, 0], [120, 0, 0], [120, 100, 0], [0, 100, 0]], dtype=float), np.array([[0, 1, 2], [0, 2, 3]]))
+    one: Piece = make_piece(120, 100)
+    pieces = one, replace(one, id="P2"), replace(one, id="P3")
+    sensors = make_sensor("C1", hairpin, 20, 20), make_sensor("C2", hairpin, 20, 60), make_sensor("C3", hairpin, 20, 40, piece="P3")
+    return Skin(mesh, Source("a.obj", "0", "mm", 1.0), np.empty((0, 2), dtype=np.int64), pieces, sensors)
+
+
+def test_a_skin_gives_a_file_for_each_piece_with_sensors(skin: Skin, printer: Printer, tmp_path: Path) -> None:
+    written = write_skin(skin, tmp_path / "new" / "gcode")
+    assert [w.file.name for w in written] == ["P1.gcode", "P3.gcode"]
+    assert written[0].plan.offset == (115.0, 125.0)
+    first = [w.file.read_bytes() for w in written]
+    assert [w.file.read_bytes() for w in write_skin(skin, tmp_path / "again")] == first
+    flat = write_skin(skin, tmp_path / "flat", printer=replace(printer, arcs=False))
+    assert [w.summary.arcs for w in flat] == [0, 0]
+
+
+def test_one_bad_piece_keeps_all_files_away(skin: Skin, tmp_path: Path, make_sensor: Callable, hairpin) -> None:  # type: ignore[no-untyped-def]
+    outside = replace(skin, sensors=(*skin.sensors, make_sensor("C4", hairpin, 600, 20, piece="P3")))
+    with pytest.raises(RefusedError, match=r"piece P3 was not written: .*pattern C4"):
+        write_skin(outside, tmp_path / "gcode")
+    assert not (tmp_path / "gcode").exists()
+
+
+def test_a_skin_without_sensors_and_a_folder_that_is_none(skin: Skin, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="no sensor"):
+        write_skin(replace(skin, sensors=()), tmp_path)
+    (tmp_path / "file").write_text("")
+    with pytest.raises(InputError, match="cannot write"):
+        write_skin(skin, tmp_path / "file")
