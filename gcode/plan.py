@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from gcode.check_height import free_length
 from gcode.clearance import distance
@@ -89,7 +89,8 @@ def plan(piece: Piece, sensors: Sequence[Sensor], *, printer: Printer, material:
             raise InputError(f"sensor {sensor.id} lies on piece {sensor.piece}, not on {piece.id}")
     offset = bed_offset(piece, printer)
     paths = {s.id: s.printed_path.transformed(angle=0.0, shift=offset) for s in sensors}
-    planner = _Planner(printer, material, piece.outline + offset)
+    edges = piece.UV[piece.topology.E[piece.topology.is_boundary]] + offset  # outline, holes, darts
+    planner = _Planner(printer, material, edges)
     planner.begin()
     for name, path in nearest_order(paths, start=(printer.bed.origin[0], printer.bed.origin[1])):
         planner.pattern(name, path)
@@ -122,10 +123,10 @@ def nearest_order(paths: dict[str, Path], *, start: Point) -> list[tuple[str, Pa
 class _Planner:
     """Appends the steps of pattern after pattern and remembers the ink that is laid."""
 
-    def __init__(self, printer: Printer, material: Material, outline: ArrayLike) -> None:
+    def __init__(self, printer: Printer, material: Material, edges: NDArray[np.float64]) -> None:
         self.printer, self.material = printer, material
         self.area = material.ink.bead_area_mm2
-        self.outline = _closed(outline)
+        self.edges = edges
         self.laid: list[Shape] = []
         self.steps: list[Step] = []
         self.warnings: list[str] = []
@@ -194,7 +195,7 @@ class _Planner:
         for tenths in range(round(10 * length / wanted), -1, -1):
             length = wanted * tenths / 10
             end = (at[0] + direction[0] * length, at[1] + direction[1] * length)
-            if not length or distance((at, end), self.outline) >= radius:
+            if not length or distance((at, end), self.edges) >= radius:
                 break
         if length < wanted * (1 - 1e-9):
             self.warnings.append(f"{name}: {kind} cut from {wanted:g} to {length:.2g} mm, for the skin's edge or wet ink is near")
@@ -243,8 +244,3 @@ def allowed_speed(shape: Shape, area: float, printer: Printer) -> tuple[float, s
     if isinstance(shape, Curve):
         limits.append((math.sqrt(motion.acceleration * shape.radius), f"v^2 <= a R at a = {motion.acceleration:g} mm/s^2"))
     return min(limits, key=lambda limit: limit[0])
-
-
-def _closed(outline: ArrayLike) -> NDArray[np.float64]:
-    points = np.asarray(outline, dtype=float)
-    return np.stack([points, np.roll(points, -1, axis=0)], axis=1)

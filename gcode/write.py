@@ -14,6 +14,7 @@ from gcode.program import Program, quantised
 from skinfab.errors import InputError, RefusedError, SkinfabError
 from skinfab.files import atomic_write, explain_os_error
 from skinfab.material import load_material
+from skinfab.placement.check import validate
 from skinfab.skin import Skin
 
 
@@ -45,7 +46,7 @@ def write_gcode(program: Program, target: str | Path, *, printer: Printer, arcs:
 def write_skin(skin: Skin, folder: str | Path, *, arcs: Arcs | None = None, printer: Printer | None = None) -> tuple[PieceGcode, ...]:
     """Write ``PIECE.gcode`` for every piece of a skin that carries a sensor.
 
-    All pieces are planned and checked before the first file is written.
+    All sensors must lie where they may, and all pieces are planned and checked before the first file is written.
 
     Parameters
     ----------
@@ -60,13 +61,14 @@ def write_skin(skin: Skin, folder: str | Path, *, arcs: Arcs | None = None, prin
     Raises
     ------
     RefusedError
-        A program fails its check.
+        A sensor lies outside its piece or too close to another, or a program fails its check.
     InputError
         No sensor at all, a bad profile, or a folder that cannot be written.
     """
     printer = printer or load_printer(skin.printer)
     arcs = arcs or ("native" if printer.arcs else "lines")
     material = load_material(skin.material)
+    validate(skin, material)
     plans = [plan(p, skin.sensors_on(p.id), printer=printer, material=material) for p in skin.pieces if skin.sensors_on(p.id)]
     if not plans:
         raise InputError("this skin has no sensor, so there is nothing to print; place one first")

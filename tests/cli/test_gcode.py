@@ -89,7 +89,7 @@ def test_hostile_files_get_one_sentence(tmp_path: Path, capsys: pytest.CaptureFi
 def test_refused_and_unusable_skins(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     save_skin(skin_with(Sensor("C1", "P1", ContactSpiral(n=3, x=2.0, b=3.0, l=6.0, s=22.0), 300, 30, 0.3, 0)), tmp_path / "out.skin")
     assert main(["gcode", str(tmp_path / "out.skin"), "-o", str(tmp_path / "g")]) == 3
-    assert "pattern C1" in capsys.readouterr().err and not (tmp_path / "g").exists()
+    assert "C1 is" in capsys.readouterr().err and not (tmp_path / "g").exists()
     save_skin(skin_with(), tmp_path / "none.skin")
     assert main(["gcode", str(tmp_path / "none.skin"), "-o", str(tmp_path / "g")]) == 1
     assert main(["gcode", str(tmp_path / "absent.skin"), "-o", str(tmp_path / "g")]) == 1

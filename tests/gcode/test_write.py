@@ -14,7 +14,9 @@ from gcode.program import Extrude
 from gcode.write import checked_text, write_gcode, write_skin
 from skinfab.errors import InputError, RefusedError
 from skinfab.mesh.model import Mesh
+from skinfab.patterns.contact_spiral import ContactSpiral
 from skinfab.pieces import Piece
+from skinfab.placement.sensor import Sensor
 from skinfab.skin import Skin, Source
 
 
@@ -51,12 +53,19 @@ def test_a_printer_without_arcs_refuses_native_ones(planned: Plan, printer: Prin
     assert "\nG3 " not in checked_text(planned.program, printer=flat, arcs="lines")[0]
 
 
+SPIRAL = ContactSpiral(n=3, x=2.0, b=3.0, l=6.0, s=22.0)
+
+
 @pytest.fixture
-def skin(make_piece: Callable, make_sensor: Callable, hairpin) -> Skin:  # type: ignore[no-untyped-def]
+def skin(make_piece: Callable[[float, float], Piece]) -> Skin:
     mesh = Mesh(np.array([[0, 0, 0], [120, 0, 0], [120, 100, 0], [0, 100, 0]], dtype=float), np.array([[0, 1, 2], [0, 2, 3]]))
-    one: Piece = make_piece(120, 100)
+    one = make_piece(120, 100)
     pieces = one, replace(one, id="P2"), replace(one, id="P3")
-    sensors = make_sensor("C1", hairpin, 20, 20), make_sensor("C2", hairpin, 20, 60), make_sensor("C3", hairpin, 20, 40, piece="P3")
+    sensors = (
+        Sensor("C1", "P1", SPIRAL, 20, 30, 0.3, 0),
+        Sensor("C2", "P1", SPIRAL, 70, 60, 0.3, 1),
+        Sensor("C3", "P3", SPIRAL, 40, 40, 1.0, 2),
+    )
     return Skin(mesh, Source("a.obj", "0", "mm", 1.0), np.empty((0, 2), dtype=np.int64), pieces, sensors)
 
 
@@ -70,10 +79,13 @@ def test_a_skin_gives_a_file_for_each_piece_with_sensors(skin: Skin, printer: Pr
     assert [w.summary.arcs for w in flat] == [0, 0]
 
 
-def test_one_bad_piece_keeps_all_files_away(skin: Skin, tmp_path: Path, make_sensor: Callable, hairpin) -> None:  # type: ignore[no-untyped-def]
-    outside = replace(skin, sensors=(*skin.sensors, make_sensor("C4", hairpin, 600, 20, piece="P3")))
-    with pytest.raises(RefusedError, match=r"piece P3 was not written: .*pattern C4"):
+def test_one_bad_piece_keeps_all_files_away(skin: Skin, printer: Printer, tmp_path: Path) -> None:
+    outside = replace(skin, sensors=(*skin.sensors, Sensor("C4", "P3", SPIRAL, 600, 20, 0.0, 3)))
+    with pytest.raises(RefusedError, match=r"C4 .* piece P3"):
         write_skin(outside, tmp_path / "gcode")
+    slow = replace(printer, pump=replace(printer.pump, flow_min=2.5))
+    with pytest.raises(RefusedError, match=r"piece P1 was not written: line \d+, pattern C\d: its flow is 2.017"):
+        write_skin(skin, tmp_path / "gcode", printer=slow)
     assert not (tmp_path / "gcode").exists()
 
 
