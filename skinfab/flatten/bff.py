@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csc_array
 
 from skinfab.errors import InputError
+from skinfab.flatten.distortion import best_scale
 from skinfab.flatten.laplacian import intrinsic
 from skinfab.linalg import Cholesky
 from skinfab.mesh.topology import Topology
@@ -78,6 +79,12 @@ def flatten_disk(V: FloatArray, F: NDArray[np.int64], *, scale: FloatArray | Non
     if cholesky is not None:
         uv[free] = cholesky.solve(-(L_bf.T @ curve))
     return uv
+
+
+def flatten_scaled(V: FloatArray, F: NDArray[np.int64]) -> FloatArray:
+    """Free-boundary BFF at the scale of the least d, (n, 2) mm."""
+    uv = flatten_disk(V, F)
+    return uv * best_scale(V, F, uv)
 
 
 def require_disk(topology: Topology, n_vertices: int) -> NDArray[np.int64]:

@@ -10,13 +10,18 @@ from skinfab.flatten.distortion import best_scale, singular_values
 from skinfab.flatten.isometric import IsometricSolver
 from skinfab.flatten.tutte import tutte_embedding
 from skinfab.mesh.topology import Topology
-from skinfab.tolerances import FLAT_START
+from skinfab.tolerances import FLAT_START, NEWTON_DECREASE
 
 FloatArray = NDArray[np.float64]
 
 
 def flatten_isometric(
-    V: FloatArray, F: NDArray[np.int64], *, topology: Topology | None = None, max_steps: int = 60, stop_at: float = 0.0
+    V: FloatArray,
+    F: NDArray[np.int64],
+    *,
+    topology: Topology | None = None,
+    tolerance: float = NEWTON_DECREASE,
+    hopeless_above: float = np.inf,
 ) -> FloatArray:
     """BFF, scaled for the least d, untangled where it flipped, refined by Newton steps.
 
@@ -26,10 +31,8 @@ def flatten_isometric(
     F : (m, 3) int64
         A disk; every vertex in use.
     topology : Topology, optional
-    max_steps : int
-        Newton steps at most.
-    stop_at : float
-        A mean d that is good enough.
+    tolerance, hopeless_above : float
+        When to stop, see `IsometricSolver.refine`.
 
     Returns
     -------
@@ -50,4 +53,4 @@ def flatten_isometric(
         # A nearly collapsed triangle stalls the line search as surely as a flipped one.
         uv = tutte_embedding(V, F, topology=topology)
         uv = uv * best_scale(V, F, uv)
-    return solver.refine(uv, max_steps=max_steps, stop_at=stop_at).UV
+    return solver.refine(uv, tolerance=tolerance, hopeless_above=hopeless_above).UV

@@ -73,7 +73,9 @@ class IsometricSolver:
         """How many numeric factorisations were done."""
         return self._cholesky.factorisations if self._cholesky else 0
 
-    def refine(self, UV: FloatArray, *, max_steps: int = 60, tolerance: float = NEWTON_DECREASE, stop_at: float = 0.0) -> Refinement:
+    def refine(
+        self, UV: FloatArray, *, max_steps: int = 60, tolerance: float = NEWTON_DECREASE, hopeless_above: float = np.inf
+    ) -> Refinement:
         """Newton steps until the promised decrease of the mean d is below `tolerance` x (mean d - 4).
 
         Parameters
@@ -82,8 +84,8 @@ class IsometricSolver:
             A flattening without flipped triangles.
         max_steps : int
         tolerance : float
-        stop_at : float
-            Stop as soon as the mean d is at or under this.
+        hopeless_above : float
+            Stop when not even twice the promised decrease would bring the mean d down to this.
 
         Raises
         ------
@@ -95,8 +97,11 @@ class IsometricSolver:
         if not np.isfinite(energy[0]):
             raise InputError("the start of the refinement has flipped triangles; untangle it first")
         converged = False
-        while len(energy) <= max_steps and energy[-1] > stop_at:
+        while len(energy) <= max_steps:
             step, slope = self._newton_step(u)
+            # The quadratic model promises -slope / 2.
+            if energy[-1] + slope > hopeless_above:
+                break
             if -slope <= tolerance * max(energy[-1] - 4, tolerance):
                 converged = True
                 break

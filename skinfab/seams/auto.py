@@ -18,7 +18,7 @@ from skinfab.seams.coarse import coarsen, transfer
 from skinfab.seams.creases import borders, crease_seams, merge_small
 from skinfab.seams.cut import seam_length
 from skinfab.seams.glue import glue_pieces
-from skinfab.seams.judge import Limits
+from skinfab.seams.judge import Limits, judge
 from skinfab.seams.refine import Judged, refine_seams
 from skinfab.seams.weights import seam_weights
 
@@ -29,6 +29,9 @@ _COARSE_FACES = 3000
 
 #: The search aims below the bound by this part of what it allows above 4, because the fine mesh shows more.
 _AIM = 0.7
+
+#: In the search a flattening need not be driven to the end: d is known to 1 % of what is above 4.
+_SEARCH_DECREASE = 1e-2
 
 #: Gluing may cost this part of what the bound allows above 4.
 _GLUE_EXCESS = 0.1
@@ -76,7 +79,9 @@ def find_seams(mesh: Mesh, limits: Limits, *, neck: float = 4.0, progress: Calla
     aim = replace(limits, mean=4 + _AIM * (limits.mean - 4))
     small = coarsen(mesh, _COARSE_FACES)
     seams = _search(small, aim, limits, neck)
-    if small is not mesh:
+    if small is mesh:
+        seams = Seams(seams.cut, [(piece, judge(mesh, piece, limits)) for piece, _ in seams.pieces])
+    else:
         cut = transfer(small, seams.cut, mesh)
         _, label = mesh.topology.face_components(cut)
         merged = merge_small(mesh, label, _SCRAP * mesh.area)
@@ -97,8 +102,8 @@ def _search(mesh: Mesh, aim: Limits, limits: Limits, neck: float) -> Seams:
         starts.append(creases)
     found = []
     for start in starts:
-        cut, pieces = refine_seams(mesh, start, aim, weight)
-        cut, pieces = glue_pieces(mesh, cut, pieces, aim, neck=neck, excess=_GLUE_EXCESS * (limits.mean - 4))
+        cut, pieces = refine_seams(mesh, start, aim, weight, tolerance=_SEARCH_DECREASE)
+        cut, pieces = glue_pieces(mesh, cut, pieces, aim, neck=neck, excess=_GLUE_EXCESS * (limits.mean - 4), tolerance=_SEARCH_DECREASE)
         found.append(Seams(cut, pieces))
     return min(found, key=lambda s: _cost(mesh, s))
 

@@ -12,6 +12,7 @@ from skinfab.mesh.model import Mesh
 from skinfab.seams.cut import open_pieces
 from skinfab.seams.judge import Limits, judge
 from skinfab.seams.refine import Judged
+from skinfab.tolerances import NEWTON_DECREASE
 
 BoolArray = NDArray[np.bool_]
 IntArray = NDArray[np.int64]
@@ -21,7 +22,15 @@ _CONE = 0.3
 
 
 def glue_pieces(
-    mesh: Mesh, cut: BoolArray, pieces: list[Judged], limits: Limits, *, neck: float, excess: float, smaller_than: float = np.inf
+    mesh: Mesh,
+    cut: BoolArray,
+    pieces: list[Judged],
+    limits: Limits,
+    *,
+    neck: float,
+    excess: float,
+    smaller_than: float = np.inf,
+    tolerance: float = NEWTON_DECREASE,
 ) -> tuple[BoolArray, list[Judged]]:
     """Glue neighbours, the longest border first, as long as the result keeps to `limits`.
 
@@ -38,6 +47,8 @@ def glue_pieces(
         By how much a glued piece's mean d may be above the area-weighted mean of its two parts.
     smaller_than : float, mm^2
         Only pairs of which one has less area than this.
+    tolerance : float
+        How far each flattening is driven, see `IsometricSolver.refine`.
 
     Returns
     -------
@@ -63,7 +74,7 @@ def glue_pieces(
             refused.add((a, b, int(edges.min())))
             continue
         (piece,) = open_pieces(mesh, trial, faces=faces)
-        verdict = judge(mesh, piece, limits) if piece.is_disk else None
+        verdict = judge(mesh, piece, limits, tolerance=tolerance) if piece.is_disk else None
         if verdict is None or not verdict.accepted or verdict.distortion.mean > _mean(mesh, judged[a], judged[b]) + excess:
             refused.add((a, b, int(edges.min())))
             continue

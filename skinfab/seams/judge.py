@@ -12,7 +12,7 @@ from skinfab.flatten.distortion import Distortion, measure
 from skinfab.flatten.orient import orient
 from skinfab.mesh.model import Mesh
 from skinfab.seams.cut import OpenPiece
-from skinfab.tolerances import OVERLAP_FRACTION
+from skinfab.tolerances import NEWTON_DECREASE, OVERLAP_FRACTION
 
 
 @dataclass(frozen=True)
@@ -54,10 +54,13 @@ class Verdict:
         return not (self.too_distorted or self.overlaps or self.too_large)
 
 
-def judge(mesh: Mesh, piece: OpenPiece, limits: Limits, *, max_steps: int = 60) -> Verdict:
-    """Flatten a disk and hold it against `limits`."""
+def judge(mesh: Mesh, piece: OpenPiece, limits: Limits, *, tolerance: float = NEWTON_DECREASE) -> Verdict:
+    """Flatten a disk, to `tolerance` of what is above 4, and hold it against `limits`.
+
+    A piece that cannot keep to the bound is flattened only as far as that takes to see.
+    """
     V = mesh.V[piece.vertices]
-    uv = orient(flatten_isometric(V, piece.F, topology=piece.topology, max_steps=max_steps))
+    uv = orient(flatten_isometric(V, piece.F, topology=piece.topology, tolerance=tolerance, hopeless_above=limits.mean))
     distortion = measure(V, piece.F, uv, topology=piece.topology)
     area = float(mesh.face_areas[piece.faces].sum())
     (w, h), (W, H) = np.ptp(uv, axis=0), sorted(limits.size, reverse=True)

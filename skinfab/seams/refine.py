@@ -13,6 +13,7 @@ from skinfab.seams.darts import grow_dart
 from skinfab.seams.disk import cut_to_disk
 from skinfab.seams.judge import Limits, Verdict, judge
 from skinfab.seams.split import farthest_faces, overlapping_faces, split
+from skinfab.tolerances import NEWTON_DECREASE
 
 BoolArray = NDArray[np.bool_]
 
@@ -28,6 +29,7 @@ def refine_seams(
     limits: Limits,
     weight: NDArray[np.float64],
     *,
+    tolerance: float = NEWTON_DECREASE,
     progress: Callable[[float], None] | None = None,
 ) -> tuple[BoolArray, list[Judged]]:
     """Add seams to `cut` until every piece is a disk that keeps to `limits`.
@@ -42,6 +44,8 @@ def refine_seams(
     limits : Limits
     weight : (e,) float
         Cost of cutting each edge.
+    tolerance : float
+        How far each flattening is driven, see `IsometricSolver.refine`.
     progress : callable, optional
         Called with the part of the area that is done.
 
@@ -62,7 +66,7 @@ def refine_seams(
             edge_weight = weight[mesh_edges(mesh, piece, np.arange(len(topology.E)))]
             opened = mesh_edges(mesh, piece, cut_to_disk(topology, edge_weight, len(piece.vertices)))
         else:
-            verdict = judge(mesh, piece, limits)
+            verdict = judge(mesh, piece, limits, tolerance=tolerance)
             if verdict.accepted:
                 done.append((piece, verdict))
                 finished_area += float(mesh.face_areas[piece.faces].sum())

@@ -1,0 +1,178 @@
+"""`skinfab flatten MESH -o OUT.obj`: flatten a mesh and say how good it is."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from skinfab.cli import steps
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from skinfab.flatten.distortion import Distortion
+    from skinfab.mesh.model import Mesh
+    from skinfab.pieces import Piece
+
+#: The names of `flatten.methods.METHODS`, and the two that also cut; repeated here because --help imports nothing heavy.
+NAMES = ("auto", "bff", "bff-cones", "isometric", "lscm", "arap", "slim", "harmonic")
+
+
+def cones(text: str) -> str | int | list[int]:
+    """``auto``, how many, or a comma-separated list of vertices (one vertex: ``12,``)."""
+    if text == "auto":
+        return text
+    try:
+        if "," in text:
+            return [int(word) for word in text.split(",") if word.strip()]
+        number = int(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is neither auto, nor a number, nor a list of vertices such as 0,5,17") from None
+    if number < 1:
+        raise argparse.ArgumentTypeError(f"{number} cones cannot be placed; give at least 1")
+    return number
+
+
+def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add the command and its options."""
+    p = subparsers.add_parser(
+        "flatten",
+        help="flatten a mesh and say how good it is",
+        description="Flatten a mesh; OUT.obj is the mesh (v, mm) with the flat pieces as texture coordinates (vt, mm). auto minimises the "
+        "distortion d, and first cuts what is not a disk; bff-cones cuts through cone points; the others need a disk.",
+    )
+    steps.add_mesh_options(p)
+    p.add_argument("-o", "--output", metavar="OUT.obj", type=Path, required=True, help="the file to write")
+    p.add_argument("--method", choices=NAMES, default="auto", help="default: auto")
+    p.add_argument("--cones", type=cones, metavar="N|auto|LIST", help="for bff-cones: how many cones, auto, or vertices such as 0,5,17")
+    p.add_argument(
+        "--max-distortion", type=steps.bound, default=4.05, metavar="D", help="for auto where it cuts: mean d of a piece at most"
+    )
+    p.add_argument("--json", metavar="FILE", type=Path, help="write the figures to FILE as JSON")
+    p.set_defaults(run=run, wrong_usage=p.error)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Flatten, check, write, and say how good it is."""
+    if args.cones is not None and args.method != "bff-cones":
+        args.wrong_usage("--cones goes with --method bff-cones")
+    from skinfab.drawings.obj import write_flat_obj
+    from skinfab.drawings.sheet import sheet_offsets
+    from skinfab.files import atomic_write
+
+    loaded = steps.load(args)
+    began = time.perf_counter()
+    pieces, distortions = _flatten(args, loaded.mesh)
+    seconds = time.perf_counter() - began
+    _require_sound(args.method, pieces, distortions)
+    figures = _figures(args.method, loaded.mesh, pieces, distortions, seconds)
+    write_flat_obj(loaded.mesh, pieces, sheet_offsets(pieces), args.output)
+    if args.json:
+        atomic_write(args.json, json.dumps(figures, indent=1, allow_nan=False) + "\n")
+    for line in steps.piece_lines(pieces, distortions):
+        print(line)
+    mean, most = figures["distortion"]["mean"], figures["distortion"]["max"]
+    print(f"{args.output}: {len(pieces)} pieces by {args.method} in {seconds:.2f} s, d mean {mean:.4f}, max {most:.3f}")
+    if mean > args.max_distortion:
+        steps.say(
+            [f"mean d {mean:.3f} is more than a skin stands ({args.max_distortion:g}); skinfab segment finds darts that bring it down"]
+        )
+    return 0
+
+
+def _flatten(args: argparse.Namespace, mesh: Mesh) -> tuple[list[Piece], list[Distortion]]:
+    from skinfab.flatten.methods import method
+    from skinfab.progress import terminal_progress
+    from skinfab.seams.auto import find_seams
+    from skinfab.seams.cones import flatten_with_cones
+    from skinfab.seams.cut import open_pieces
+    from skinfab.seams.judge import Limits
+    from skinfab.seams.pieces import to_pieces
+
+    if args.method == "bff-cones":
+        wanted = args.cones or "auto"
+        listed = _vertices(wanted) if isinstance(wanted, list) else None
+        count = wanted if isinstance(wanted, int) else None
+        _, piece, uv, _ = flatten_with_cones(mesh, cones=listed, count=count)
+        return _as_pieces(mesh, [(piece.faces, piece.vertices, piece.F, uv)])
+    opened = open_pieces(mesh, mesh.topology.is_boundary)
+    if args.method == "auto":
+        if all(piece.is_disk for piece in opened):
+            flat = [(p.faces, p.vertices, p.F, method("isometric")(mesh.V[p.vertices], p.F)) for p in opened]
+            pieces, distortions = _as_pieces(mesh, flat)
+            if not any(d.overlap_mm2 > 0 or d.flipped for d in distortions):
+                return pieces, distortions
+        steps.say(["the surface cannot lie flat in one go, so it is cut automatically"])
+        with terminal_progress() as progress:
+            seams = find_seams(mesh, Limits(mean=args.max_distortion), progress=lambda done: progress(done, "cutting and flattening"))
+        named = to_pieces(mesh, seams.pieces)
+        by_first_face = {int(p.faces[0]): v.distortion for p, v in seams.pieces}
+        return list(named), [by_first_face[int(p.faces[0])] for p in named]
+    return _as_pieces(mesh, [(p.faces, p.vertices, p.F, method(args.method)(mesh.V[p.vertices], p.F)) for p in opened])
+
+
+def _vertices(numbers: list[int]) -> NDArray[np.int64]:
+    import numpy as np
+
+    return np.array(numbers, dtype=np.int64)
+
+
+def _as_pieces(
+    mesh: Mesh, flat: list[tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]]
+) -> tuple[list[Piece], list[Distortion]]:
+    from skinfab.flatten.distortion import measure
+    from skinfab.flatten.orient import orient
+    from skinfab.pieces import Piece
+
+    pieces = [Piece(f"P{k}", faces, vertices, F, orient(uv)) for k, (faces, vertices, F, uv) in enumerate(flat, start=1)]
+    return pieces, [measure(p.V(mesh), p.F, p.UV, topology=p.topology) for p in pieces]
+
+
+def _require_sound(method: str, pieces: list[Piece], distortions: list[Distortion]) -> None:
+    from skinfab.errors import RefusedError
+    from skinfab.tolerances import OVERLAP_FRACTION
+
+    for piece, d in zip(pieces, distortions, strict=True):
+        if d.flipped:
+            raise RefusedError(f"{method} turned {d.flipped} of {len(piece.F)} triangles of {piece.id} over; use --method auto")
+        if not d.overlap_mm2 <= OVERLAP_FRACTION * piece.area:
+            raise RefusedError(f"laid flat by {method}, {piece.id} covers {d.overlap_mm2:.3g} mm^2 twice; use --method auto, which cuts it")
+
+
+def _figures(method: str, mesh: Mesh, pieces: list[Piece], distortions: list[Distortion], seconds: float) -> dict[str, Any]:
+    import numpy as np
+
+    from skinfab.flatten.distortion import distortion_of, singular_values
+
+    areas = np.array([mesh.face_areas[p.faces].sum() for p in pieces])
+    kept = []
+    for piece, area in zip(pieces, areas, strict=True):
+        # The same shape at the scale that keeps the object's area: the other common choice.
+        s = singular_values(piece.V(mesh), piece.F, piece.UV) * np.sqrt(area / piece.area)
+        real = mesh.face_areas[piece.faces] > 0
+        kept.append(float(np.average(distortion_of(s)[real], weights=mesh.face_areas[piece.faces][real])))
+    return {
+        "method": method,
+        "n_faces": len(mesh.F),
+        "pieces": [
+            {
+                "id": p.id,
+                "n_faces": len(p.F),
+                "distortion": {"mean": d.mean, "p95": d.p95, "p99": d.p99, "max": d.max},
+                "mean_at_kept_area": k,
+                "flipped": d.flipped,
+                "overlap_mm2": d.overlap_mm2,
+            }
+            for p, d, k in zip(pieces, distortions, kept, strict=True)
+        ],
+        "distortion": {
+            "mean": float(np.average([d.mean for d in distortions], weights=areas)),
+            "mean_at_kept_area": float(np.average(kept, weights=areas)),
+            "max": max(d.max for d in distortions),
+        },
+        "flatten_s": seconds,
+    }

@@ -1,0 +1,158 @@
+"""`skinfab make MESH -o DIR`: the walk through all of it, from a mesh to what one takes to the lab."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from skinfab.cli import steps
+
+if TYPE_CHECKING:
+    from skinfab.flatten.distortion import Distortion
+    from skinfab.progress import Progress, Stopwatch
+    from skinfab.skin import Skin
+
+
+def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add the command and its options."""
+    p = subparsers.add_parser(
+        "make",
+        help="mesh in, everything out: seams, flat pieces, sensors, G-code, moulds, report",
+        description="From a mesh to a skin ready to be cast and printed. DIR gets skin.skin, report.json, report.html, preview.png, "
+        "flat.svg, flat.dxf, flat.obj, gcode/PIECE.gcode and mould/PIECE.stl.",
+    )
+    steps.add_mesh_options(p)
+    p.add_argument("-o", "--output", metavar="DIR", type=Path, required=True, help="folder for the results, made if missing")
+    p.add_argument("--sensors", metavar="FILE.toml", type=Path, help="which sensors, and where (see docs/sensors.md; default: automatic)")
+    steps.add_cut_options(p)
+    p.add_argument("--json", action="store_true", help="print the report as one JSON object and nothing else")
+    p.set_defaults(run=run)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Make everything in a hidden folder, then move it into place."""
+    from skinfab.progress import Stopwatch, terminal_progress
+    from skinfab.staging import staged_folder
+
+    watch = Stopwatch()
+    with staged_folder(args.output) as folder, terminal_progress(quiet=args.json) as progress:
+        report = _make(args, folder, watch, progress)
+    if args.json:
+        print(json.dumps(report, allow_nan=False))
+        return 0
+    steps.say(report["warnings"], kind="warning")
+    d, ink = report["distortion"], sum(g["ink_mm3"] for g in report["gcode"])
+    print(
+        f"{args.output}: {len(report['pieces'])} pieces, d mean {d['mean']:.4f}; {len(report['sensors'])} sensors, {ink:.0f} mm^3 of ink, "
+        f"printed in {sum(g['time_s'] for g in report['gcode']) / 60:.0f} min; made in {report['timing_s']['total']:.1f} s"
+    )
+    print(f"open {args.output / 'report.html'}")
+    return 0
+
+
+def _make(args: argparse.Namespace, folder: Path, watch: Stopwatch, progress: Progress) -> dict[str, Any]:
+    from skinfab.document import save_skin
+    from skinfab.progress import part_of, peak_rss_mb
+    from skinfab.recipe import recipe
+    from skinfab.report.build import build_report, write_report
+
+    used = steps.profiles(args.printer)
+    progress(0.0, "reading")
+    with watch.phase("load"):
+        loaded = steps.load(args)
+    with watch.phase("segment"):
+        within = steps.limits(args.max_distortion, used)
+        seams = steps.cut(loaded, within, neck=used.material.neck, progress=part_of(progress, 0.05, 0.6))
+    with watch.phase("flatten"):
+        skin, distortions = steps.to_skin(loaded, seams, used=used, max_distortion=args.max_distortion, seed=args.seed)
+    progress(0.6, "placing sensors")
+    with watch.phase("place"):
+        sensors, warnings = steps.place_sensors(skin, used.material, args.sensors)
+        skin = replace(skin, sensors=sensors)
+    progress(0.75, "writing G-code")
+    with watch.phase("gcode"):
+        printed, remarks = _write_gcode(skin, folder / "gcode", used)
+    progress(0.8, "making moulds")
+    with watch.phase("mould"):
+        moulds, cavities, lips, flaws = _write_moulds(skin, folder / "mould", used)
+    progress(0.9, "drawing")
+    save_skin(skin, folder / "skin.skin")
+    _write_drawings(skin, folder)
+    report = build_report(
+        skin,
+        distortions,
+        material=used.material,
+        gcode=printed,
+        moulds=moulds,
+        recipe=recipe(cavities, used.material, lips_ml=lips).as_dict(),
+        timing_s=watch.timing_s(),
+        peak_rss_mb=peak_rss_mb(),
+        warnings=[*loaded.notes, *warnings, *remarks, *flaws],
+    )
+    _write_pictures(skin, distortions, report, folder)
+    # The pictures take a while, and the report says how long all of it took.
+    report |= {"timing_s": watch.timing_s(), "peak_rss_mb": peak_rss_mb()}
+    write_report(report, folder / "report.json")
+    return report
+
+
+def _write_gcode(skin: Skin, folder: Path, used: steps.Profiles) -> tuple[list[dict[str, Any]], list[str]]:
+    from gcode.write import write_skin
+
+    if not skin.sensors:
+        return [], [
+            "no piece is large enough for a sensor, so there is no G-code; scale the object up or give smaller sensors with --sensors"
+        ]
+    files, remarks = [], []
+    for written in write_skin(skin, folder, printer=used.printer):
+        s = written.summary
+        files.append(
+            {
+                "file": f"gcode/{written.file.name}",
+                "lines": s.lines,
+                "time_s": s.time_s,
+                "ink_mm3": s.ink_mm3,
+                "bbox_mm": s.bbox_mm,
+                "arcs": s.arcs,
+            }
+        )
+        remarks += written.plan.warnings
+    return files, remarks
+
+
+def _write_moulds(
+    skin: Skin, folder: Path, used: steps.Profiles
+) -> tuple[list[dict[str, Any]], dict[str, float], dict[str, float], list[str]]:
+    from skinfab.mould import skin_moulds, write_mould
+
+    folder.mkdir()
+    files, flaws = [], []
+    moulds = skin_moulds(skin, material=used.material)
+    for mould in moulds:
+        write_mould(mould, folder / f"{mould.piece}.stl")
+        files.append({"file": f"mould/{mould.piece}.stl", "watertight": mould.watertight, "cavity_ml": mould.cavity_ml})
+        flaws += mould.warnings
+    return files, {m.piece: m.cavity_ml for m in moulds}, {m.piece: m.lip_ml for m in moulds}, flaws
+
+
+def _write_drawings(skin: Skin, folder: Path) -> None:
+    from skinfab.drawings.dxf import write_dxf
+    from skinfab.drawings.obj import write_flat_obj
+    from skinfab.drawings.sheet import sheet_offsets
+    from skinfab.drawings.svg import write_svg
+
+    write_svg(skin, folder / "flat.svg")
+    write_dxf(skin, folder / "flat.dxf")
+    write_flat_obj(skin.mesh, skin.pieces, sheet_offsets(skin.pieces), folder / "flat.obj")
+
+
+def _write_pictures(skin: Skin, distortions: list[Distortion], report: dict[str, Any], folder: Path) -> None:
+    from skinfab.report.html import write_html
+    from skinfab.report.preview import draw_preview
+
+    draw_preview(skin, distortions, report, folder / "preview.png")
+    pictures = {"The skin at a glance": folder / "preview.png", "The flat pieces, to scale": folder / "flat.svg"}
+    write_html(report, folder / "report.html", pictures=pictures)

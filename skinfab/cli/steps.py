@@ -1,0 +1,151 @@
+"""Steps that several commands share: options, reading the mesh, cutting it, writing the document."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from gcode.printer import Printer
+    from skinfab.flatten.distortion import Distortion
+    from skinfab.material import Material
+    from skinfab.mesh.io import Loaded
+    from skinfab.pieces import Piece
+    from skinfab.placement.sensor import Sensor
+    from skinfab.progress import Progress
+    from skinfab.seams.auto import Seams
+    from skinfab.seams.judge import Limits
+    from skinfab.skin import Skin
+
+
+def positive(text: str) -> float:
+    """A finite number above zero, for argparse."""
+    value = float(text)
+    if not 0 < value < float("inf"):
+        raise argparse.ArgumentTypeError(f"{text} is not a positive number")
+    return value
+
+
+def bound(text: str) -> float:
+    """A bound on the mean d, for argparse: above the perfect 4."""
+    value = positive(text)
+    if not value > 4:
+        raise argparse.ArgumentTypeError(f"{text} is not above 4, which is a perfect flattening")
+    return value
+
+
+def add_mesh_options(p: argparse.ArgumentParser) -> None:
+    """MESH and how to read it."""
+    p.add_argument("mesh", metavar="MESH", type=Path, help="OBJ, STL, PLY, OFF or GLB file")
+    p.add_argument("--units", choices=("mm", "cm", "m", "in"), help="unit of the file (default: guessed from its size, and said)")
+    p.add_argument("--scale", type=positive, default=1.0, metavar="S", help="multiply all coordinates by S")
+    p.add_argument("--repair", action="store_true", help="mend faults that change the surface: holes, non-manifold edges, specks")
+
+
+def add_cut_options(p: argparse.ArgumentParser) -> None:
+    """What pieces have to keep to."""
+    p.add_argument("--max-distortion", type=bound, default=4.05, metavar="D", help="mean d of a piece at most (default 4.05; 4 is perfect)")
+    p.add_argument("--printer", metavar="NAME|FILE", help="printer profile, whose bed the pieces must fit")
+    p.add_argument("--seed", type=int, default=0, help="kept in the document; the same seed gives the same result")
+
+
+def load(args: argparse.Namespace) -> Loaded:
+    """The mesh that the arguments name, fit for use; what was done to it is said on standard error."""
+    from skinfab.mesh.door import load_usable
+
+    loaded = load_usable(args.mesh, units=args.units, scale=args.scale, mend=args.repair)
+    say(loaded.notes)
+    return loaded
+
+
+def say(notes: Sequence[str], *, kind: str = "note") -> None:
+    """Sentences for the user, one a line, on standard error: standard output is for results."""
+    for note in notes:
+        print(f"{kind}: {note}", file=sys.stderr)
+
+
+@dataclass(frozen=True)
+class Profiles:
+    """Printer and material, by the names that go into the document."""
+
+    printer_name: str
+    printer: Printer
+    material_name: str
+    material: Material
+
+
+def profiles(printer: str | None = None) -> Profiles:
+    """Load the profiles; a printer's own file is named by its absolute path, so that the document finds it again."""
+    from gcode.printer import DEFAULT_PRINTER, load_printer
+    from skinfab.material import load_material
+
+    name = printer or DEFAULT_PRINTER
+    if name.endswith(".toml"):
+        name = str(Path(name).resolve())
+    material = "carbon-grease-ecoflex"
+    return Profiles(name, load_printer(name), material, load_material(material))
+
+
+def limits(max_distortion: float, used: Profiles) -> Limits:
+    """Pieces within the distortion bound whose moulds fit the bed."""
+    from skinfab.seams.judge import Limits
+
+    mould = used.material.mould
+    rim = 2 * (mould.wall + mould.mark + mould.lip)
+    width, depth = used.printer.bed_size
+    return Limits(mean=max_distortion, size=(width - rim, depth - rim))
+
+
+def to_skin(loaded: Loaded, seams: Seams, *, used: Profiles, max_distortion: float, seed: int) -> tuple[Skin, list[Distortion]]:
+    """The document of a cut mesh without sensors, and each piece's distortion in its order."""
+    from skinfab.seams.pieces import to_pieces
+    from skinfab.skin import Skin, Source
+
+    topology = loaded.mesh.topology
+    pieces = to_pieces(loaded.mesh, seams.pieces)
+    skin = Skin(
+        mesh=loaded.mesh,
+        source=Source(loaded.file, loaded.sha256, loaded.units, loaded.scale),
+        seams=topology.E[seams.cut & ~topology.is_boundary],
+        pieces=pieces,
+        printer=used.printer_name,
+        material=used.material_name,
+        max_distortion=max_distortion,
+        seed=seed,
+    )
+    by_first_face = {int(piece.faces[0]): verdict.distortion for piece, verdict in seams.pieces}
+    return skin, [by_first_face[int(piece.faces[0])] for piece in pieces]
+
+
+def cut(loaded: Loaded, within: Limits, *, neck: float, progress: Progress) -> Seams:
+    """Automatic seams."""
+    from skinfab.seams.auto import find_seams
+
+    return find_seams(loaded.mesh, within, neck=neck, progress=lambda done: progress(done, "cutting and flattening"))
+
+
+def piece_lines(pieces: Sequence[Piece], distortions: Sequence[Distortion]) -> list[str]:
+    """One line a piece, for a person to read."""
+    return [
+        f"{piece.id}: {piece.size[0]:.1f} x {piece.size[1]:.1f} mm, {len(piece.F)} triangles, "
+        f"d mean {d.mean:.4f} p99 {d.p99:.3f} max {d.max:.3f}"
+        for piece, d in zip(pieces, distortions, strict=True)
+    ]
+
+
+def place_sensors(skin: Skin, material: Material, file: Path | None) -> tuple[tuple[Sensor, ...], list[str]]:
+    """Sensors as a file says or automatic ones, checked, and what the user should be told."""
+    from skinfab.placement.auto import place
+    from skinfab.placement.check import validate
+    from skinfab.placement.sensors_file import place_from_file
+
+    if file is None:
+        sensors, warnings = place(skin.mesh, skin.pieces, material=material, seed=skin.seed)
+    else:
+        sensors, warnings = place_from_file(file, skin.mesh, skin.pieces, material=material, seed=skin.seed)
+    validate(replace(skin, sensors=tuple(sensors)), material)
+    return tuple(sensors), list(warnings)

@@ -1,0 +1,46 @@
+"""The methods that flatten one disk, by name: to add one, add one entry.
+
+An entry is ``module:function``; the function takes V (n, 3) and F (m, 3) of a disk and returns UV (n, 2) in
+mm. Modules are imported when asked for, so that a fast method does not wait for another's library.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from importlib import import_module
+
+import numpy as np
+from numpy.typing import NDArray
+
+from skinfab.errors import InputError
+
+Flatten = Callable[[NDArray[np.float64], NDArray[np.int64]], NDArray[np.float64]]
+
+METHODS = {
+    "bff": "skinfab.flatten.bff:flatten_scaled",
+    "isometric": "skinfab.flatten.disk:flatten_isometric",
+    "lscm": "skinfab.flatten.classic:lscm",
+    "harmonic": "skinfab.flatten.classic:harmonic",
+    "arap": "skinfab.flatten.classic:arap",
+    "slim": "skinfab.flatten.classic:slim",
+}
+
+
+def method(name: str) -> Flatten:
+    """The function that flattens by the method of that name.
+
+    Raises
+    ------
+    InputError
+        No such method.
+
+    Examples
+    --------
+    >>> method("isometric").__name__
+    'flatten_isometric'
+    """
+    if name not in METHODS:
+        raise InputError(f"no flattening method {name!r}; there are {', '.join(METHODS)}")
+    module, function = METHODS[name].split(":")
+    found: Flatten = getattr(import_module(module), function)
+    return found
