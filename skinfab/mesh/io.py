@@ -130,8 +130,8 @@ def _parse(path: Path, data: bytes) -> tuple[NDArray[np.float64], NDArray[np.int
         _check_ply_header(data, path.name)
     elif suffix == ".off":
         _check_off_header(data, path.name)
-    elif data[:4] != b"glTF":
-        raise InputError(f"{path.name} is no GLB (it does not begin with 'glTF'); check the file or its extension")
+    else:
+        _check_glb_header(data, path.name)
     return _parse_with_trimesh(data, path.name, suffix[1:])
 
 
@@ -153,6 +153,14 @@ def _check_off_header(data: bytes, name: str) -> None:
         raise InputError(f"{name} is no OFF (it does not begin with 'OFF'); check the file or its extension")
     if any(word.isdigit() and int(word) > len(data) for word in words[1:3]):
         raise InputError(f"{name} is cut off: its header claims more elements than the file holds; export the mesh again")
+
+
+def _check_glb_header(data: bytes, name: str) -> None:
+    if data[:4] != b"glTF":
+        raise InputError(f"{name} is no GLB (it does not begin with 'glTF'); check the file or its extension")
+    claimed = int.from_bytes(data[8:12], "little")
+    if claimed > len(data):
+        raise InputError(f"{name} is cut off: its header claims {claimed} bytes, it has {len(data)}; export the mesh again")
 
 
 def _parse_with_trimesh(data: bytes, name: str, kind: str) -> tuple[NDArray[np.float64], NDArray[np.int64]]:

@@ -80,6 +80,13 @@ def _check(found: _Polygons, name: str) -> tuple[NDArray[np.float64], IntArray]:
     if bad.any():
         line = found.vertex_line[np.argmax(bad)]
         raise InputError(f"{name} line {line}: vertex {int(np.argmax(bad)) + 1} is not finite (NaN or infinity); export the mesh again")
+    bad = found.sizes > max(len(found.V), 3)
+    if bad.any():
+        k = int(np.argmax(bad))
+        raise InputError(
+            f"{name} line {found.face_line[k]}: face {k + 1} has {found.sizes[k]} corners, more than there are vertices "
+            f"({len(found.V)}); export the mesh again"
+        )
     face = np.repeat(np.arange(len(found.sizes)), found.sizes)
     corners = np.where(found.corners < 0, found.corners + found.vertices_before[face], found.corners - 1)
     bad = (corners < 0) | (corners >= len(found.V)) | (found.corners == 0)

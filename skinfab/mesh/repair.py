@@ -17,7 +17,6 @@ _PASSES = (
     cleaning.drop_duplicates,
     cleaning.weld_cracks,
     cleaning.merge_flat,
-    cleaning.drop_duplicates,
     cleaning.wind_consistently,
     cleaning.part_sheets,
     cleaning.drop_unreferenced,
