@@ -146,11 +146,12 @@ def _recipe(recipe: Mapping[str, Any]) -> str:
 
 
 def _provenance(report: Mapping[str, Any]) -> str:
-    mesh, timing = report["mesh"], report["timing_s"]
-    phases = ", ".join(f"{escape(name)} {seconds:.2f}" for name, seconds in timing.items())
+    mesh = report["mesh"]
+    # The page is written before the run is over: its total and its memory are not known yet.
+    phases = ", ".join(f"{escape(name)} {seconds:.2f}" for name, seconds in report["timing_s"].items() if name != "total")
     return (
         f"<p>Made from {escape(mesh['file'])}, read in {escape(mesh['units'])}, SHA-256 <code>{escape(mesh['sha256'])}</code>. "
-        f"Seconds: {phases}. Peak memory {report['peak_rss_mb']:.0f} MB.</p>"
+        f"Seconds: {phases}.</p>"
     )
 
 

@@ -136,7 +136,6 @@ def _draw_numbers(axes: Axes, report: Mapping[str, Any]) -> None:
     lines = [
         f"{_printable(mesh['file'])[:40]}: {mesh['n_faces']} faces, {parts}",
         f"d mean {d['mean']:.4f}  p99 {d['p99']:.4f}  max {d['max']:.4f}",
-        f"made in {report['timing_s']['total']:.1f} s with {report['peak_rss_mb']:.0f} MB",
         "",
         f"{'piece':<8}{'faces':>8}{'area mm2':>11}{'d mean':>9}{'d p99':>9}{'d max':>9}",
         *_rows(
