@@ -74,7 +74,8 @@ def registration_steps(places: Sequence[MouldPlace], *, home: str, glass_z: floa
     steps += [
         "Jog the nozzle to the lower left mark and move the mould under it; jog to the lower right mark and turn the mould until it "
         "agrees; the upper left mark is the check. Then tape the mould down.",
-        f"Beside the mould, lower the nozzle until it holds a sheet of paper on the glass, and set this height as Z {glass_z:.2f} (G92 Z{glass_z:.2f}).",
+        f"Beside the mould, lower the nozzle until it holds a sheet of paper on the glass, and set this height as "
+        f"Z {glass_z:.2f} (G92 Z{glass_z:.2f}).",
         "Raise the nozzle clear of the mould's wall and start " + ", ".join(f"{p.gcode} for {p.piece}" for p in places) + ".",
     ]
     return steps

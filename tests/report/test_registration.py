@@ -8,12 +8,13 @@ import pytest
 from skinfab.errors import InputError
 from skinfab.report.registration import MouldPlace, registration_steps
 
-PLACES = [MouldPlace(f"P{k}", f"gcode/P{k}.gcode", np.array([[0.0, 0.0], [80, 0], [0, 50]]) + (100.125 * k, 40.25)) for k in (1, 2)]
+CORNERS = np.array([[0.0, 0.0], [80, 0], [0, 50]])
+PLACES = [MouldPlace(f"P{k}", f"gcode/P{k}.gcode", CORNERS + np.array([100.125 * k, 40.25])) for k in (1, 2)]
 
 
 def test_every_mark_is_given_in_machine_coordinates() -> None:
     text = " ".join(registration_steps(PLACES, home="xy"))
-    found = [(float(x), float(y)) for x, y in re.findall(r"X([\d.]+) Y([\d.]+)", text)]
+    found = [(float(x), float(y)) for x, y in re.findall(r"X(\d+\.\d\d) Y(\d+\.\d\d)", text)]
     np.testing.assert_allclose(found, np.vstack([p.marks for p in PLACES]), atol=0.005 + 1e-9)
 
 
