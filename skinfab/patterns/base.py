@@ -14,7 +14,7 @@ from numbers import Real
 from typing import Any, ClassVar
 
 from skinfab.errors import InputError
-from skinfab.paths import Path
+from skinfab.paths import Path, Point
 from skinfab.patterns.pads import pad_stroke
 from skinfab.tolerances import PARAMETER_STEP_MM
 
@@ -86,6 +86,12 @@ class Pattern(ABC):
     @abstractmethod
     def path(self) -> Path:
         """The conductor from terminal to terminal, pads left out."""
+
+    @property
+    def middle(self) -> Point:
+        """What should lie on the spot the sensor is for, (2,) mm: the centre of the conductor's box unless a pattern knows better."""
+        centre: Point = self.path().bbox.mean(axis=0)
+        return centre
 
     def printed_path(self) -> Path:
         """Pad, conductor, pad: one stroke of the printer."""

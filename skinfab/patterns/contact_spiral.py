@@ -89,6 +89,11 @@ class ContactSpiral(Pattern):
         links = math.pi * self.x if self.caps else 2 * self.x
         return 2 * self.l + links + turns + trims
 
+    @property
+    def middle(self) -> Point:
+        """Half-way between the two centres."""
+        return np.array([self.l + self.s / 2 - self.x / 2, self.b / 2])
+
     def _radius(self, k: int) -> float:
         return self.s / 2 - k * self.x
 

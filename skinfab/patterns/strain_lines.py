@@ -11,7 +11,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from skinfab.paths import Arc, Line, Path, Segment
+from skinfab.paths import Arc, Line, Path, Point, Segment
 from skinfab.patterns.base import Pattern, PatternError
 
 
@@ -68,6 +68,11 @@ class StrainLines(Pattern):
         """Length of the path in closed form, mm."""
         r, inner = self._radius, self.lines - 2
         return 2 * (self.l1 - r) + inner * (self.l2 - 2 * r) + (self.lines - 1) * math.pi * r
+
+    @property
+    def middle(self) -> Point:
+        """Of the loops, which belong across the joint."""
+        return np.array([self.l1 - self.l2 / 2, self.b / 2])
 
     def path(self) -> Path:
         """The conductor: `lines` lines and lines - 1 half-circles, each tangent to the next, mm."""

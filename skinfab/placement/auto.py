@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from skinfab.errors import InputError
 from skinfab.material import Material
 from skinfab.mesh.model import Mesh
+from skinfab.patterns.base import Pattern
 from skinfab.patterns.contact_spiral import ContactSpiral
 from skinfab.patterns.registry import PATTERNS
 from skinfab.patterns.strain_lines import StrainLines
@@ -152,9 +153,9 @@ class Namer:
 def _strain(
     mesh: Mesh, spaces: Sequence[Space], namer: Namer, warnings: list[str], *, material: Material, rng: np.random.Generator
 ) -> None:
-    sensor = place_strain(mesh, spaces, material=material, rng=rng)
+    sizes = list(strain_sizes(material))
+    sensor = place_strain(mesh, spaces, sizes, material=material, rng=rng)
     if sensor is None:
-        sizes = list(strain_sizes(material))
         smallest = f"even {sizes[-1].l1:g} x {sizes[-1].b:g} mm does not fit along it" if sizes else "the bead is too wide for it"
         warnings.append(f"{mesh.name} looks like a finger, but there is no strain sensor across its middle: {smallest}")
         return
@@ -179,20 +180,10 @@ def _contacts(space: Space, spirals: Sequence[ContactSpiral], namer: Namer, per_
             return
 
 
-@dataclass(frozen=True, eq=False)
-class Region:
-    """A part of a piece that is filled by itself."""
-
-    space: Space
-    raster: Raster
-    cells: NDArray[np.bool_]
-    between_creases: bool
-
-
 def _fill(region: Region, spirals: Sequence[ContactSpiral], namer: Namer, limit: int, rng: np.random.Generator) -> int:
     """Spirals from the largest down, packed from one end; one that stays alone sits in the middle instead."""
     if limit == 1:
-        alone = next(filter(None, (_best(region, pattern, rng, packed=False) for pattern in spirals)), None)
+        alone = next(filter(None, (best_in(region, pattern, rng, packed=False) for pattern in spirals)), None)
         if alone:
             namer.add(region.space, alone)
         return 1 if alone else 0
@@ -200,7 +191,7 @@ def _fill(region: Region, spirals: Sequence[ContactSpiral], namer: Namer, limit:
     trial = _copy(region)
     k = 0
     while k < len(spirals) and len(found) < limit:
-        sensor = None if found and spirals[k].s < _FILL_SIZE else _best(trial, spirals[k], rng, packed=True)
+        sensor = None if found and spirals[k].s < _FILL_SIZE else best_in(trial, spirals[k], rng, packed=True)
         if sensor is None:
             k += 1
             continue
@@ -209,10 +200,20 @@ def _fill(region: Region, spirals: Sequence[ContactSpiral], namer: Namer, limit:
     if len(found) == 1:
         pattern = found[0].pattern
         assert isinstance(pattern, ContactSpiral)
-        found = [_best(region, pattern, rng, packed=False) or found[0]]
+        found = [best_in(region, pattern, rng, packed=False) or found[0]]
     for sensor in found:
         namer.add(region.space, sensor)
     return len(found)
+
+
+@dataclass(frozen=True, eq=False)
+class Region:
+    """A part of a piece that is filled by itself."""
+
+    space: Space
+    raster: Raster
+    cells: NDArray[np.bool_]
+    between_creases: bool
 
 
 def _copy(region: Region) -> Region:
@@ -224,7 +225,8 @@ def _copy(region: Region) -> Region:
     return Region(space, space.facets if region.between_creases else space.raster, region.cells, region.between_creases)
 
 
-def _best(region: Region, pattern: ContactSpiral, rng: np.random.Generator, *, packed: bool) -> Sensor | None:
+def best_in(region: Region, pattern: Pattern, rng: np.random.Generator, *, packed: bool) -> Sensor | None:
+    """Where a pattern fits in a region: in the roomiest place, or `packed` towards one end; None where it does not fit."""
     footprint = Footprint.of(pattern)
     turns = region.space.main_direction + np.arange(_DIRECTIONS) * 2 * np.pi / _DIRECTIONS
     poses = poses_in(region.raster, region.cells, footprint, turns, need=need_of(pattern, region.space.material), rng=rng)

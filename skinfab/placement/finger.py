@@ -75,8 +75,10 @@ def strain_sizes(material: Material) -> Iterator[StrainLines]:
             continue  # a wide bead leaves no room for this size
 
 
-def place_strain(mesh: Mesh, spaces: Sequence[Space], *, material: Material, rng: np.random.Generator) -> Sensor | None:
-    """One strain sensor, as large as fits, along the long axis with its loops across the middle of the length.
+def place_strain(
+    mesh: Mesh, spaces: Sequence[Space], patterns: Sequence[StrainLines], *, material: Material, rng: np.random.Generator
+) -> Sensor | None:
+    """One strain sensor, the first of `patterns` that fits, along the long axis with its loops across the middle of the length.
 
     The middle stands for the middle joint for want of more knowledge. The axis is pulled back to the flat
     piece by the flattening's Jacobian where the sensor lies.
@@ -84,15 +86,15 @@ def place_strain(mesh: Mesh, spaces: Sequence[Space], *, material: Material, rng
     Returns
     -------
     Sensor or None
-        With its id and channel still open; None where not even the smallest fits.
+        With its id and channel still open; None where none fits.
     """
     axis = long_axis(mesh)[0][0]
     along = mesh.V[np.unique(mesh.F)] @ axis
     joint = (along.min() + along.max()) / 2
-    band = max(p.l2 for p in strain_sizes(material)) * _SPAN
+    band = max((p.l2 for p in patterns), default=0.0) * _SPAN
     near = [_places_near(mesh, space, axis, joint, band=band, rng=rng) for space in spaces]
-    for pattern in strain_sizes(material):
-        footprint = Footprint.of(pattern, anchor=(pattern.l1 - pattern.l2 / 2, pattern.b / 2))
+    for pattern in patterns:
+        footprint = Footprint.of(pattern)
         best: list[tuple[float, float, int, Poses, int]] = []
         for which, (space, (places, directions, offsets)) in enumerate(zip(spaces, near, strict=True)):
             ok = np.abs(offsets) <= _SPAN * pattern.l2
@@ -119,7 +121,7 @@ def _places_near(
     heights = piece.V(mesh) @ axis - joint
     if heights.min() > band or heights.max() < -band:
         return np.zeros((0, 2)), np.zeros(0), np.zeros(0)
-    places = raster.centres(raster.clearance >= need_of(next(strain_sizes(space.material)), space.material))
+    places = raster.centres(raster.clearance > space.material.margin)
     face, weights = space.locator.barycentric(places)
     offset = np.einsum("nk,nk->n", weights, heights[piece.F[face]])
     keep = np.flatnonzero((face >= 0) & (np.abs(offset) <= band))

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from skinfab.material import Material
 from skinfab.mesh.model import Mesh
@@ -29,6 +29,8 @@ _VERIFIED = 12
 _RIM_STEP = 1.5
 #: A pose that lacks more than so many steps of the raster is not nudged: small moves will not free it.
 _HOPELESS = 4.0
+#: Moves of a pose that is nudged.
+_NUDGES = 15
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,6 +44,7 @@ class Footprint:
     rim : (k, 2) float, mm
         Points along the hull, at most 1.5 mm apart.
     anchor : (2,) float, mm
+        The pattern's middle.
     reach : float, mm
         A circle of this radius about the anchor lies inside the hull.
     """
@@ -52,21 +55,19 @@ class Footprint:
     reach: float
 
     @staticmethod
-    def of(pattern: Pattern, *, anchor: ArrayLike | None = None) -> Footprint:
-        """Of pads and all; without an anchor, about the centre of the largest circle in the hull."""
+    def of(pattern: Pattern) -> Footprint:
+        """Of pads and all, about the pattern's middle."""
         import shapely
-        from shapely.ops import polylabel
 
         points = pattern.printed_path().to_polyline(tolerance=PREVIEW_CHORD_MM)
         hull = shapely.Polygon(points).convex_hull
         assert isinstance(hull, shapely.Polygon)  # pads and turns are never all on one line
-        ring = shapely.segmentize(hull.exterior, _RIM_STEP)
-        centre = polylabel(hull, tolerance=0.1) if anchor is None else shapely.Point(np.asarray(anchor, dtype=float))
+        anchor = pattern.middle
         return Footprint(
             hull=shapely.get_coordinates(hull.exterior)[:-1],
-            rim=shapely.get_coordinates(ring)[:-1],
-            anchor=shapely.get_coordinates(centre)[0],
-            reach=float(hull.exterior.distance(centre)),
+            rim=shapely.get_coordinates(shapely.segmentize(hull.exterior, _RIM_STEP))[:-1],
+            anchor=anchor,
+            reach=float(hull.exterior.distance(shapely.Point(anchor))),
         )
 
     @property
@@ -205,7 +206,10 @@ def poses_in(
     possible = cells & (raster.clearance >= footprint.reach + need - raster.step)
     places = raster.centres(possible)
     if len(places) > _PLACES:
-        places = places[np.sort(rng.choice(len(places), _PLACES, replace=False))]
+        # One half where there is most room, for what only just fits; the other anywhere, for packing.
+        by_room = np.argsort(-np.round(raster.clearance_at(places), 6), kind="stable")
+        anywhere = rng.choice(by_room[_PLACES // 2 :], _PLACES // 2, replace=False)
+        places = places[np.sort(np.concatenate([by_room[: _PLACES // 2], anywhere]))]
     if not len(places):
         return Poses(np.zeros((0, 2)), np.zeros(0), np.zeros(0))
     each = [poses_around(raster, footprint, places, np.full(len(places), a), need=need) for a in angles]
@@ -218,7 +222,7 @@ def first_fit(
 ) -> Sensor | None:
     """The first of the poses, taken in `order`, at which the pattern fits exactly; its id and channel are still open."""
     for k in order[:_VERIFIED]:
-        sensor = _sensor_at(space, pattern, footprint, poses.places[k], float(poses.angles[k]))
+        sensor = sensor_at(space, pattern, footprint, poses.places[k], float(poses.angles[k]))
         if space.fits(sensor, between_creases=between_creases):
             return sensor
     return None
@@ -241,7 +245,9 @@ def nudged_fit(space: Space, pattern: Pattern, footprint: Footprint, poses: Pose
     best, step = room(place, angle), space.raster.step
     if best < -_HOPELESS * step:
         return None
-    while best < 0 and step > space.raster.step / 10:
+    for _ in range(_NUDGES):
+        if best >= 0:
+            break
         turn = step / footprint.radius
         moves = [(place + step * np.array([np.cos(a), np.sin(a)]), angle) for a in np.arange(8) * np.pi / 4]
         moves += [(place, angle + turn), (place, angle - turn)]
@@ -251,11 +257,12 @@ def nudged_fit(space: Space, pattern: Pattern, footprint: Footprint, poses: Pose
             best, (place, angle) = rooms[k], moves[k]
         else:
             step /= 2
-    sensor = _sensor_at(space, pattern, footprint, place, angle)
+    sensor = sensor_at(space, pattern, footprint, place, angle)
     return sensor if best >= 0 and space.fits(sensor, between_creases=between_creases) else None
 
 
-def _sensor_at(space: Space, pattern: Pattern, footprint: Footprint, place: Array, angle: float) -> Sensor:
+def sensor_at(space: Space, pattern: Pattern, footprint: Footprint, place: Array, angle: float) -> Sensor:
+    """The pattern with its anchor at `place` (2,) mm, not checked; its id and channel are still open."""
     x, y = _origin(footprint, place, angle)
     return Sensor("new", space.piece.id, pattern, float(x), float(y), angle, -1)
 

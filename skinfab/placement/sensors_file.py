@@ -1,0 +1,209 @@
+"""Sensors from a file: `--sensors FILE.toml`.
+
+A list of sensors, each at a place of one's own or wherever it fits, and a table for automatic placement::
+
+    [auto]                              # fill the rest; leave the table out for the listed sensors alone
+    kinds = ["contact-spiral"]          # what to place: "contact-spiral", "strain-lines"; default both
+    sizes = [22, 15]                    # outer diameters of contact spirals, mm; default the paper's
+    per_piece = 2                       # at most so many contact sensors on a piece; default 4
+
+    [[sensor]]
+    kind = "contact-spiral"
+    params = { n = 3, x = 1.7, b = 1.5, l = 3, s = 15 }
+    pose = { piece = "P1", x = 12.5, y = 20.0, angle_deg = 90 }   # where the pattern's origin lies on the flat piece
+
+    [[sensor]]
+    id = "S1"                           # optional; default C1, C2, ... and S1, S2, ...
+    channel = 7                         # optional; default the next free one, from 0
+    kind = "strain-lines"
+    params = { l1 = 60, l2 = 54, b = 6 }
+    pose = "auto"                       # wherever it fits best; a strain sensor on a finger: across the middle joint
+
+    [[sensor]]
+    kind = "contact-spiral"
+    params = { n = 3, x = 1.7, b = 1.5, l = 3, s = 15 }
+    pose = { point = [4.0, 0.0, 31.5] } # mm on the object: its middle goes to the nearest point of the surface
+
+`point` takes an `angle_deg` too; without one, the direction with the most room is chosen. The bead's width, the
+gap and the pad's side are the material's unless `params` has `bead`, `gap` or `pad`.
+"""
+
+from __future__ import annotations
+
+import difflib
+import math
+import tomllib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Any
+
+from skinfab.errors import InputError
+from skinfab.material import Material
+from skinfab.patterns.base import Pattern
+from skinfab.patterns.registry import make_pattern
+from skinfab.patterns.strain_lines import StrainLines
+from skinfab.placement.auto import AutoOptions
+
+
+@dataclass(frozen=True)
+class FlatPose:
+    """A pose on a flat piece: mm and rad."""
+
+    piece: str
+    x: float
+    y: float
+    angle: float
+
+
+@dataclass(frozen=True)
+class OnObject:
+    """A place on the object, mm; without an angle (rad, on the flat piece) any direction will do."""
+
+    point: tuple[float, float, float]
+    angle: float | None
+
+
+@dataclass(frozen=True)
+class Request:
+    """One sensor as the file asks for it; `pose` is None for "auto"."""
+
+    id: str
+    channel: int
+    pattern: Pattern
+    pose: FlatPose | OnObject | None
+
+
+@dataclass(frozen=True)
+class SensorsFile:
+    """What a file asks for; `auto` is None where it has no [auto] table."""
+
+    requests: tuple[Request, ...]
+    auto: AutoOptions | None
+
+
+def read_sensors_file(path: str | Path, *, material: Material) -> SensorsFile:
+    """Read a file of sensors.
+
+    Raises
+    ------
+    InputError
+        No such file, not TOML, or a field unknown, missing or of the wrong type: says which sensor and which field.
+    """
+    try:
+        data = tomllib.loads(Path(path).read_text(encoding="utf-8"))
+    except OSError as fault:
+        raise InputError(f"cannot read sensors from {path}: {fault.strerror}") from fault
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as fault:
+        raise InputError(f"{path} is not a TOML file: {fault}") from fault
+    where = Path(path).name
+    _known(data, ("auto", "sensor"), where)
+    tables = data.get("sensor", [])
+    if not isinstance(tables, list) or not all(isinstance(t, dict) for t in tables):
+        raise InputError(f"{where}: 'sensor' must be a list of tables; write [[sensor]] with two brackets")
+    if not tables and "auto" not in data:
+        raise InputError(f"{where} asks for no sensor; add a [[sensor]] or an [auto] table")
+    auto = _auto(data["auto"], f"{where}, [auto]") if "auto" in data else None
+    return SensorsFile(_requests(tables, where, material), auto)
+
+
+def _auto(table: Any, where: str) -> AutoOptions:
+    if not isinstance(table, dict):
+        raise InputError(f"{where}: it must be a table")
+    _known(table, tuple(f.name for f in fields(AutoOptions)), where)
+    options: dict[str, Any] = {}
+    if "kinds" in table:
+        kinds = table["kinds"]
+        if not isinstance(kinds, list) or not all(isinstance(k, str) for k in kinds):
+            raise InputError(f"{where}: kinds is {kinds!r}; it must be a list of names")
+        options["kinds"] = tuple(kinds)
+    if "sizes" in table:
+        if not isinstance(table["sizes"], list):
+            raise InputError(f"{where}: sizes is {table['sizes']!r}; it must be a list of diameters, mm")
+        options["sizes"] = tuple(_number(s, "sizes", where) for s in table["sizes"])
+    if "per_piece" in table:
+        options["per_piece"] = _count(table["per_piece"], "per_piece", where)
+    try:
+        return AutoOptions(**options)
+    except InputError as fault:
+        raise InputError(f"{where}: {fault}") from fault
+
+
+def _requests(tables: Sequence[Mapping[str, Any]], where: str, material: Material) -> tuple[Request, ...]:
+    ids = [t["id"] for t in tables if "id" in t]
+    channels = [t["channel"] for t in tables if "channel" in t]
+    requests = []
+    for k, table in enumerate(tables, 1):
+        here = f"{where}, sensor {k}"
+        _known(table, ("id", "channel", "kind", "params", "pose"), here)
+        for name in ("kind", "params", "pose"):
+            if name not in table:
+                raise InputError(f"{here}: field {name!r} is missing; it needs kind, params and pose")
+        if not isinstance(table["kind"], str) or not isinstance(table["params"], dict):
+            raise InputError(f"{here}: kind must be a name and params a table such as {{ s = 15 }}")
+        try:
+            pattern = make_pattern(
+                table["kind"], {"bead": material.ink.bead_width, "gap": material.gap, "pad": material.pad, **table["params"]}
+            )
+        except InputError as fault:
+            raise InputError(f"{here}: {fault}") from fault
+        letter = "S" if isinstance(pattern, StrainLines) else "C"
+        id = table["id"] if "id" in table else _next(ids, lambda n, letter=letter: f"{letter}{n + 1}")
+        if not isinstance(id, str) or not id:
+            raise InputError(f'{here}: id is {id!r}; it must be a name such as "C1"')
+        channel = _count(table["channel"], "channel", here) if "channel" in table else _next(channels, lambda n: n)
+        ids.append(id)
+        channels.append(channel)
+        requests.append(Request(id, channel, pattern, _pose(table["pose"], here)))
+    for name, values in (("id", [r.id for r in requests]), ("channel", [str(r.channel) for r in requests])):
+        twice = sorted({v for v in values if values.count(v) > 1})
+        if twice:
+            raise InputError(f"{where}: {name} {twice[0]} is used more than once; give each sensor its own")
+    return tuple(requests)
+
+
+def _pose(pose: Any, where: str) -> FlatPose | OnObject | None:
+    if pose == "auto":
+        return None
+    if not isinstance(pose, dict):
+        raise InputError(f'{where}: pose is {pose!r}; it must be "auto", {{ piece, x, y, angle_deg }} or {{ point = [x, y, z] }}')
+    if "point" in pose:
+        _known(pose, ("point", "angle_deg"), f"{where}, pose")
+        point = pose["point"]
+        if not isinstance(point, list) or len(point) != 3:
+            raise InputError(f"{where}: point is {point!r}; it must be [x, y, z] in mm")
+        x, y, z = (_number(c, "point", where) for c in point)
+        angle = math.radians(_number(pose["angle_deg"], "angle_deg", where)) if "angle_deg" in pose else None
+        return OnObject((x, y, z), angle)
+    _known(pose, ("piece", "x", "y", "angle_deg"), f"{where}, pose")
+    for name in ("piece", "x", "y"):
+        if name not in pose:
+            raise InputError(f"{where}, pose: field {name!r} is missing; it needs piece, x and y, or a point")
+    if not isinstance(pose["piece"], str):
+        raise InputError(f'{where}, pose: piece is {pose["piece"]!r}; it must be a name such as "P1"')
+    x, y, degrees = (_number(pose.get(name, 0.0), name, f"{where}, pose") for name in ("x", "y", "angle_deg"))
+    return FlatPose(pose["piece"], x, y, math.radians(degrees))
+
+
+def _known(table: Mapping[str, Any], names: Sequence[str], where: str) -> None:
+    for name in table:
+        if name not in names:
+            near = difflib.get_close_matches(name, names, n=1, cutoff=0.5)
+            hint = f" (did you mean {near[0]!r}?)" if near else ""
+            raise InputError(f"{where}: unknown field {name!r}{hint}; it knows {', '.join(names)}")
+
+
+def _number(value: Any, name: str, where: str) -> float:
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
+        raise InputError(f"{where}: {name} is {value!r}; it must be a number")
+    return float(value)
+
+
+def _count(value: Any, name: str, where: str) -> int:
+    if isinstance(value, bool) or not isinstance(value, int) or value < 0:
+        raise InputError(f"{where}: {name} is {value!r}; it must be a whole number, 0 or more")
+    return value
+
+
+def _next(taken: Sequence[Any], name: Any) -> Any:
+    return next(name(n) for n in range(len(taken) + 1) if name(n) not in taken)

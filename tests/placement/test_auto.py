@@ -1,0 +1,103 @@
+"""Automatic placement on small pieces: what it places fits exactly, and the same again with the same seed."""
+
+import dataclasses
+import re
+from collections.abc import Callable
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from skinfab.errors import InputError
+from skinfab.material import load_material
+from skinfab.mesh.model import Mesh
+from skinfab.patterns.contact_spiral import ContactSpiral
+from skinfab.placement.auto import SEED_SIZES, AutoOptions, place, spiral_of_size
+from skinfab.placement.check import validate
+from skinfab.placement.distance import Curves, distance
+from skinfab.placement.search import crease_lines
+
+MATERIAL = load_material()
+
+
+def sizes(sensors: tuple) -> list[float]:
+    return [s.pattern.s for s in sensors if isinstance(s.pattern, ContactSpiral)]
+
+
+@pytest.mark.parametrize(("side", "s"), [(22.0, 15.0), (30.0, 22.0)])
+def test_a_cube_gets_one_spiral_on_each_face(cube_net: Callable, side: float, s: float) -> None:
+    mesh, piece = cube_net(side)
+    assert mesh.topology.euler == 2 and mesh.area == pytest.approx(6 * side**2) and piece.topology.euler == 1
+    sensors, warnings = place(mesh, [piece], material=MATERIAL)
+    validate(SimpleNamespace(pieces=(piece,), sensors=sensors), MATERIAL)
+    assert sizes(sensors) == [s] * 6 and not warnings
+    faces = {tuple(np.floor(x.path.transformed(angle=0, shift=(0, 0)).bbox.mean(axis=0) / side)) for x in sensors}
+    assert len(faces) == 6
+    creases = Curves.of_edges(crease_lines(mesh, piece))
+    assert len(creases) == 5
+    assert min(distance(Curves.of_segments(x.printed_path.segments), creases) for x in sensors) >= MATERIAL.ink.bead_width / 2
+    assert [x.channel for x in sensors] == list(range(6)) and [x.id for x in sensors] == [f"C{k}" for k in range(1, 7)]
+
+
+def test_a_rectangle_is_packed_with_the_largest_first(sheet: Callable) -> None:
+    mesh, piece = sheet(60, 100)
+    sensors, warnings = place(mesh, [piece], material=MATERIAL, options=AutoOptions(kinds=("contact-spiral",)))
+    validate(SimpleNamespace(pieces=(piece,), sensors=sensors), MATERIAL)
+    assert sizes(sensors)[:2] == [45, 45] and 2 <= len(sensors) <= 4 and not warnings
+    again, _ = place(mesh, [piece], material=MATERIAL, options=AutoOptions(kinds=("contact-spiral",)))
+    assert again == sensors
+
+
+def test_options_narrow_it_down(sheet: Callable) -> None:
+    mesh, piece = sheet(60, 100)
+    options = AutoOptions(kinds=("contact-spiral",), sizes=(15, 20), per_piece=3)
+    sensors, _ = place(mesh, [piece], material=MATERIAL, options=options)
+    assert sizes(sensors) == [20, 20, 20]
+    for bad, says in (({"kinds": ("spiral",)}, "no kind 'spiral'"), ({"sizes": ()}, "sizes"), ({"per_piece": 0}, "per_piece is 0")):
+        with pytest.raises(InputError, match=says):
+            AutoOptions(**bad)
+
+
+def test_creases_are_ignored_where_nothing_fits_between_them(sheet: Callable) -> None:
+    mesh, piece = sheet(40, 40, step=10)
+    V = mesh.V.copy()
+    V[:, 2] = 10 * (np.round(V[:, 0] / 10) % 2)  # folded every 10 mm
+    folded = Mesh(V, mesh.F)
+    assert len(crease_lines(folded, piece)) == 12
+    sensors, warnings = place(folded, [piece], material=MATERIAL)
+    assert sizes(sensors) and not warnings
+
+
+def test_noise_is_no_crease(sheet: Callable) -> None:
+    mesh, piece = sheet(40, 40, step=2)
+    V = mesh.V.copy()
+    V[len(V) // 2, 2] = 2.0  # one spike: six sharp edges in a star, 14 mm of them, and around
+    assert len(crease_lines(Mesh(V, mesh.F), piece)) > 0
+    V[len(V) // 2, 2] = 1.0
+    assert len(crease_lines(Mesh(V, mesh.F), piece)) == 0
+
+
+def test_too_small_a_piece_is_named_with_what_would_fit(sheet: Callable) -> None:
+    mesh, piece = sheet(60, 8, step=2)
+    sensors, warnings = place(mesh, [piece], material=MATERIAL, options=AutoOptions(kinds=("contact-spiral",)))
+    assert sensors == ()
+    (text,) = warnings
+    said = re.fullmatch(
+        r"piece P1 has no sensor: its largest inscribed circle is (\S+) mm across, "
+        r"and the smallest sensor \(s = 10 mm\) fits into one of (\S+) mm",
+        text,
+    )
+    assert said and float(said[1]) == pytest.approx(8, abs=0.5) and 15 < float(said[2]) < 25
+
+
+def test_more_sensors_than_channels_is_said(sheet: Callable) -> None:
+    mesh, one = sheet(40, 40)
+    pieces = [dataclasses.replace(one, id=f"P{k}") for k in range(33)]
+    sensors, warnings = place(mesh, pieces, material=MATERIAL, options=AutoOptions(kinds=("contact-spiral",), sizes=(20,), per_piece=1))
+    assert len(sensors) == 33 and len(warnings) == 1 and "33 sensors need more than the 32 channels" in warnings[0]
+
+
+@pytest.mark.parametrize("s", SEED_SIZES)
+def test_spirals_of_the_papers_sizes_exist(s: float) -> None:
+    p = spiral_of_size(s, MATERIAL)
+    assert p.s == s and 1.7 <= p.x <= 3.2 and 1.5 <= p.b <= 8 and 3 <= p.l <= 8

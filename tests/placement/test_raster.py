@@ -1,0 +1,42 @@
+"""The raster against exact distances."""
+
+from collections.abc import Callable
+
+import numpy as np
+import shapely
+
+from skinfab.placement.raster import Raster
+
+
+def boundary(piece: object) -> np.ndarray:
+    return piece.UV[piece.topology.E[piece.topology.is_boundary]]
+
+
+def test_clearance_is_right_to_about_a_step(sheet: Callable) -> None:
+    hole = lambda c: (np.abs(c - [20, 30]) < 6).all(axis=1)  # noqa: E731
+    _, piece = sheet(60, 60, without=hole, step=2)
+    edges = boundary(piece)
+    raster = Raster(edges, np.zeros((0, 2, 2)))
+    walls = shapely.MultiLineString(list(edges))
+    points = np.random.default_rng(0).uniform(0, 60, (500, 2))
+    inside = ~((np.abs(points - [20, 30]) < 6).all(axis=1))
+    exact = np.where(inside, shapely.distance(shapely.points(points), walls), 0.0)
+    assert np.abs(raster.clearance_at(points) - exact).max() < 1.6 * raster.step
+    assert (raster.clearance_at(np.array([[-5.0, 3.0], [1e6, 0.0], [20.0, 30.0]])) == 0).all()
+
+
+def test_a_closed_slit_is_a_wall_and_creases_divide(sheet: Callable) -> None:
+    _, piece = sheet(60, 60, slit=True)
+    raster = Raster(boundary(piece), np.zeros((0, 2, 2)))
+    assert raster.clearance_at(np.array([[30.0, 10.0]])) < raster.step and raster.clearance_at(np.array([[30.0, 45.0]])) > 14
+    assert raster.regions()[0] == 1
+    divided = Raster(boundary(piece), np.array([[[0.0, 30.0], [60.0, 30.0]]]))
+    assert divided.regions()[0] == 3  # the slit parts the lower half
+    divided.block_polygon(np.array([[0.0, 31], [60, 31], [60, 60], [0, 60]]))
+    assert divided.clearance_at(np.array([[30.0, 45.0]])) == 0
+
+
+def test_large_pieces_get_coarser_cells(sheet: Callable) -> None:
+    _, piece = sheet(400, 400, step=20)
+    raster = Raster(boundary(piece), np.zeros((0, 2, 2)))
+    assert raster.free.size < 400_000 and 0.5 < raster.step < 0.8

@@ -1,0 +1,86 @@
+"""Placing what a file asks for, and its errors."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from skinfab.errors import InputError, RefusedError
+from skinfab.material import load_material
+from skinfab.placement.check import check_sensor
+from skinfab.placement.requested import nearest_on_pieces, place_from_file
+
+MATERIAL = load_material()
+SPIRAL = 'kind = "contact-spiral"\nparams = { n = 3, x = 1.7, b = 1.5, l = 3, s = 15 }\n'
+
+
+def run(tmp_path: Path, text: str, made: tuple) -> tuple:
+    file = tmp_path / "sensors.toml"
+    file.write_text(text)
+    mesh, piece = made
+    return place_from_file(file, mesh, [piece], material=MATERIAL)
+
+
+def test_pose_point_auto_and_fill(tmp_path: Path, sheet: Callable) -> None:
+    made = sheet(140, 100)
+    text = f"""
+[[sensor]]
+{SPIRAL}pose = "auto"
+[[sensor]]
+{SPIRAL}channel = 7
+pose = {{ piece = "P1", x = 20, y = 30, angle_deg = 90 }}
+[[sensor]]
+{SPIRAL}id = "thumb"
+pose = {{ point = [70.0, 80.0, 3.0] }}
+[auto]
+kinds = ["contact-spiral"]
+sizes = [22]
+per_piece = 2
+"""
+    sensors, warnings = run(tmp_path, text, made)
+    by_id = {s.id: s for s in sensors}
+    assert not warnings and {s.channel for s in sensors} == {0, 1, 2, 3, 7}
+    assert (by_id["C2"].x, by_id["C2"].y, by_id["C2"].channel) == (20, 30, 7) and by_id["C2"].angle == pytest.approx(np.pi / 2)
+    thumb = by_id["thumb"]
+    c, s = np.cos(thumb.angle), np.sin(thumb.angle)
+    np.testing.assert_allclose(np.array([thumb.x, thumb.y]) + np.array([[c, -s], [s, c]]) @ thumb.pattern.middle, [70, 80], atol=1e-9)
+    assert sum(x.pattern.s == 22 for x in sensors) == 2
+    for x in sensors:
+        assert check_sensor(made[1], x, sensors, material=MATERIAL) == []
+
+
+def test_only_what_is_listed(tmp_path: Path, sheet: Callable) -> None:
+    sensors, warnings = run(tmp_path, f'[[sensor]]\n{SPIRAL}pose = "auto"\n', sheet(140, 100))
+    assert [s.id for s in sensors] == ["C1"] and not warnings
+
+
+@pytest.mark.parametrize(
+    ("pose", "error", "says"),
+    [
+        ('{ piece = "P1", x = 130, y = 30 }', RefusedError, r"C1 is \d+\.\d mm outside piece P1"),
+        ("{ point = [1.0, 1.0, 0.0] }", RefusedError, r"C1 is .* outside piece P1"),
+        ('{ piece = "P2", x = 1, y = 3 }', InputError, "C1: no piece 'P2'; there are P1"),
+    ],
+)
+def test_what_does_not_fit_is_named(tmp_path: Path, sheet: Callable, pose: str, error: type, says: str) -> None:
+    with pytest.raises(error, match=says):
+        run(tmp_path, f"[[sensor]]\n{SPIRAL}pose = {pose}\n", sheet(140, 100))
+
+
+def test_no_room_anywhere(tmp_path: Path, sheet: Callable) -> None:
+    with pytest.raises(RefusedError, match=r"C1 \(contact-spiral\) fits on no piece: the largest free circle is 1\d\.\d mm"):
+        run(tmp_path, f'[[sensor]]\n{SPIRAL}pose = "auto"\n', sheet(60, 15))
+
+
+def test_two_on_one_place(tmp_path: Path, sheet: Callable) -> None:
+    same = f'[[sensor]]\n{SPIRAL}pose = {{ piece = "P1", x = 20, y = 30 }}\n'
+    with pytest.raises(RefusedError, match=r"C2 is 1\.4 mm too close to C1"):
+        run(tmp_path, same + same, sheet(140, 100))
+
+
+def test_nearest_point_is_taken_through_the_flattening(sheet: Callable) -> None:
+    mesh, piece = sheet(40, 40, scale=0.5)
+    which, flat = nearest_on_pieces(mesh, [piece], np.array([10.0, 26.0, 9.0]))
+    assert which == 0
+    np.testing.assert_allclose(flat, [5, 13], atol=1e-9)

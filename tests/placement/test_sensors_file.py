@@ -1,0 +1,67 @@
+"""Reading a file of sensors: what is in it, and what is wrong with it."""
+
+import math
+import re
+from pathlib import Path
+
+import pytest
+
+from skinfab.errors import InputError
+from skinfab.material import load_material
+from skinfab.placement.sensors_file import FlatPose, OnObject, read_sensors_file
+
+MATERIAL = load_material()
+GOOD = '[[sensor]]\nkind = "contact-spiral"\nparams = { n = 3, x = 1.7, b = 1.5, l = 3, s = 15 }\npose = "auto"\n'
+
+
+def read(tmp_path: Path, text: str) -> object:
+    file = tmp_path / "sensors.toml"
+    file.write_text(text)
+    return read_sensors_file(file, material=MATERIAL)
+
+
+def test_the_example_of_the_user_guide(tmp_path: Path) -> None:
+    guide = (Path(__file__).parents[2] / "docs" / "sensors.md").read_text(encoding="utf-8")
+    wanted = read(tmp_path, re.search(r"```toml\n(.*?)```", guide, re.S)[1])
+    assert [(r.id, r.channel) for r in wanted.requests] == [("C1", 0), ("S1", 7), ("C2", 1)]
+    assert wanted.requests[0].pose == FlatPose("P1", 12.5, 20.0, math.pi / 2)
+    assert wanted.requests[1].pose is None and wanted.requests[1].pattern.b == 6
+    assert wanted.requests[2].pose == OnObject((4.0, 0.0, 31.5), None)
+    assert (wanted.auto.kinds, wanted.auto.sizes, wanted.auto.per_piece) == (("contact-spiral",), (22.0, 15.0), 2)
+    assert wanted.requests[0].pattern.pad == MATERIAL.pad
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("", "asks for no sensor"),
+        ("sensor = 3", r"write \[\[sensor\]\]"),
+        ("[sensors]", "unknown field 'sensors' .did you mean 'sensor'"),
+        ("a = ", "is not a TOML file"),
+        (GOOD.replace("pose", "poses"), r"sensor 1: unknown field 'poses' \(did you mean 'pose'"),
+        (GOOD.replace('pose = "auto"', ""), "field 'pose' is missing"),
+        (GOOD.replace('"auto"', '"automatic"'), "pose is 'automatic'; it must be"),
+        (GOOD.replace('"auto"', "{ x = 3, y = 4 }"), "field 'piece' is missing"),
+        (GOOD.replace('"auto"', '{ piece = "P1", x = "3", y = 4 }'), "x is '3'; it must be a number"),
+        (GOOD.replace('"auto"', "{ point = [3, 4] }"), r"point is \[3, 4\]"),
+        (GOOD.replace("x = 1.7", "x = 1.0"), "sensor 1: contact-spiral: x is 1.0; it must be at least 1.385"),
+        (GOOD.replace("x = 1.7", "pitch = 1.7"), "sensor 1: contact-spiral: unknown parameter 'pitch'"),
+        (GOOD + "channel = -1", "channel is -1; it must be a whole number"),
+        (GOOD + 'id = ""', "id is ''"),
+        (GOOD + "channel = 3\n" + GOOD + "channel = 3", "channel 3 is used more than once"),
+        (GOOD + 'id = "C1"\n' + GOOD + 'id = "C1"', "id C1 is used more than once"),
+        ("[auto]\nsize = [3]", r"\[auto\]: unknown field 'size' .did you mean 'sizes'"),
+        ('[auto]\nkinds = "strain-lines"', "kinds is 'strain-lines'; it must be a list"),
+        ('[auto]\nkinds = ["strain"]', "knows no kind 'strain'"),
+        ("[auto]\nsizes = [-3]", "sizes are"),
+        ("[auto]\nper_piece = 1.5", "per_piece is 1.5"),
+    ],
+)
+def test_mistakes_are_named(tmp_path: Path, text: str, says: str) -> None:
+    with pytest.raises(InputError, match=says):
+        read(tmp_path, text)
+
+
+def test_no_file(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="cannot read sensors from"):
+        read_sensors_file(tmp_path / "none.toml", material=MATERIAL)
