@@ -95,7 +95,7 @@ def inspect(V: NDArray[np.float64], F: IntArray) -> Inspection:
     faults.look("duplicate face", duplicate, face, "clean", "dropped, one is kept where the surface needs it")
     sound = F[readable & ~repeated & ~duplicate]
     unused = np.ones(len(V), dtype=bool)
-    unused[sound] = False
+    unused[F[~outside & ~repeated]] = False
     faults.look("unreferenced vertex", unused, vertex, "clean", "dropped")
     top = Topology(sound)
     bowtie = bowties(top, len(V))
@@ -106,7 +106,7 @@ def inspect(V: NDArray[np.float64], F: IntArray) -> Inspection:
     if not area > 0:
         faults.found.append(Fault("no area", 1, "the whole mesh", "export it as a surface mesh", "no"))
     count, label = components(top)
-    size = np.ptp(V[~unused], axis=0) if len(sound) else np.zeros(3)
+    size = np.ptp(V[~unused & finite], axis=0) if len(sound) else np.zeros(3)
     return Inspection(
         faces=len(F),
         vertices=len(V),
