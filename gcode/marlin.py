@@ -40,11 +40,18 @@ PREAMBLE = (
 )
 
 HOMING = {
-    "xyz": (("; home xyz: Z too. Home before the mould lies on the bed: a probe would dip into the wet silicone.",), ("G28",)),
+    "xyz": (
+        (
+            "; home xyz: Z too. Home before the mould lies on the bed: a probe would dip into wet silicone.",
+            "; Z is counted from the floor of the cavity: give the firmware that floor's height (M206 Z).",
+        ),
+        ("G28",),
+    ),
     "xy": (
         (
             "; home xy: Z is left alone, for a probe at bed centre would dip into the wet mould.",
-            "; Before the start set Z = 0 by hand: nozzle on the glass, then zero Z.",
+            "; Z is counted from the floor of the cavity: before the start, with the nozzle on the glass,",
+            "; send G92 Z-(thickness of the mould's floor); the report says how much.",
         ),
         ("G28 X Y",),
     ),

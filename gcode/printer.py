@@ -26,7 +26,7 @@ class Bed:
 
 @dataclass(frozen=True)
 class Heights:
-    """Nozzle heights over the glass, mm: where ink is laid, the range that is accepted, where the head travels."""
+    """Nozzle heights over the floor of the mould's cavity, mm: where ink is laid, the range that is accepted, where the head travels."""
 
     print: float
     print_min: float

@@ -11,7 +11,9 @@ from typing import TYPE_CHECKING, Any
 from skinfab.cli import steps
 
 if TYPE_CHECKING:
+    from gcode.write import PieceGcode
     from skinfab.flatten.distortion import Distortion
+    from skinfab.mould import CastingMould
     from skinfab.progress import Progress, Stopwatch
     from skinfab.skin import Skin
 
@@ -54,6 +56,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _make(args: argparse.Namespace, folder: Path, watch: Stopwatch, progress: Progress) -> dict[str, Any]:
+    from gcode.write import write_skin
     from skinfab.document import save_skin
     from skinfab.progress import part_of, peak_rss_mb
     from skinfab.recipe import recipe
@@ -74,10 +77,11 @@ def _make(args: argparse.Namespace, folder: Path, watch: Stopwatch, progress: Pr
         skin = replace(skin, sensors=sensors)
     progress(0.75, "writing G-code")
     with watch.phase("gcode"):
-        printed, remarks = _write_gcode(skin, folder / "gcode", used)
+        printed = write_skin(skin, folder / "gcode", printer=used.printer) if skin.sensors else ()
+        remarks = [remark for w in printed for remark in w.plan.warnings]
     progress(0.8, "making moulds")
     with watch.phase("mould"):
-        moulds, cavities, lips, flaws = _write_moulds(skin, folder / "mould", used)
+        moulds = _write_moulds(skin, folder / "mould", used)
     progress(0.9, "drawing")
     save_skin(skin, folder / "skin.skin")
     _write_drawings(skin, folder)
@@ -85,57 +89,40 @@ def _make(args: argparse.Namespace, folder: Path, watch: Stopwatch, progress: Pr
         skin,
         distortions,
         material=used.material,
-        gcode=printed,
-        moulds=moulds,
-        recipe=recipe(cavities, used.material, lips_ml=lips).as_dict(),
+        gcode=[_gcode_facts(w) for w in printed],
+        moulds=[{"file": f"mould/{m.piece}.stl", "watertight": m.watertight, "cavity_ml": m.cavity_ml} for m in moulds],
+        recipe=recipe({m.piece: m.cavity_ml for m in moulds}, used.material, lips_ml={m.piece: m.lip_ml for m in moulds}).as_dict(),
         timing_s=watch.timing_s(),
         peak_rss_mb=peak_rss_mb(),
-        warnings=[*loaded.notes, *warnings, *remarks, *flaws],
+        warnings=[*loaded.notes, *warnings, *remarks, *(flaw for m in moulds for flaw in m.warnings)],
     )
-    _write_pictures(skin, distortions, report, folder)
+    _write_pictures(skin, distortions, report, _registration(moulds, {w.piece: w.plan.offset for w in printed}), folder)
     # The pictures take a while, and the report says how long all of it took.
     report |= {"timing_s": watch.timing_s(), "peak_rss_mb": peak_rss_mb()}
     write_report(report, folder / "report.json")
     return report
 
 
-def _write_gcode(skin: Skin, folder: Path, used: steps.Profiles) -> tuple[list[dict[str, Any]], list[str]]:
-    from gcode.write import write_skin
-
-    if not skin.sensors:
-        return [], [
-            "no piece is large enough for a sensor, so there is no G-code; scale the object up or give smaller sensors with --sensors"
-        ]
-    files, remarks = [], []
-    for written in write_skin(skin, folder, printer=used.printer):
-        s = written.summary
-        files.append(
-            {
-                "file": f"gcode/{written.file.name}",
-                "lines": s.lines,
-                "time_s": s.time_s,
-                "ink_mm3": s.ink_mm3,
-                "bbox_mm": s.bbox_mm,
-                "arcs": s.arcs,
-            }
-        )
-        remarks += written.plan.warnings
-    return files, remarks
+def _gcode_facts(written: PieceGcode) -> dict[str, Any]:
+    s = written.summary
+    return {
+        "file": f"gcode/{written.file.name}",
+        "lines": s.lines,
+        "time_s": s.time_s,
+        "ink_mm3": s.ink_mm3,
+        "bbox_mm": s.bbox_mm,
+        "arcs": s.arcs,
+    }
 
 
-def _write_moulds(
-    skin: Skin, folder: Path, used: steps.Profiles
-) -> tuple[list[dict[str, Any]], dict[str, float], dict[str, float], list[str]]:
+def _write_moulds(skin: Skin, folder: Path, used: steps.Profiles) -> list[CastingMould]:
     from skinfab.mould import skin_moulds, write_mould
 
     folder.mkdir()
-    files, flaws = [], []
     moulds = skin_moulds(skin, material=used.material)
     for mould in moulds:
         write_mould(mould, folder / f"{mould.piece}.stl")
-        files.append({"file": f"mould/{mould.piece}.stl", "watertight": mould.watertight, "cavity_ml": mould.cavity_ml})
-        flaws += mould.warnings
-    return files, {m.piece: m.cavity_ml for m in moulds}, {m.piece: m.lip_ml for m in moulds}, flaws
+    return moulds
 
 
 def _write_drawings(skin: Skin, folder: Path) -> None:
@@ -149,10 +136,26 @@ def _write_drawings(skin: Skin, folder: Path) -> None:
     write_flat_obj(skin.mesh, skin.pieces, sheet_offsets(skin.pieces), folder / "flat.obj")
 
 
-def _write_pictures(skin: Skin, distortions: list[Distortion], report: dict[str, Any], folder: Path) -> None:
+def _registration(moulds: list[CastingMould], offsets: dict[str, tuple[float, float]]) -> list[str]:
+    """How to lay each mould on the bed so that the ink falls where the drawing says."""
+    words = []
+    for mould in moulds:
+        if mould.piece not in offsets:
+            continue
+        (x, y), (right, _), (_, top) = mould.marks + offsets[mould.piece]
+        words.append(
+            f"{mould.piece}: home X and Y, then lay the mould on the bed so that the nozzle stands over the corner of its lower left mark "
+            f"at X{x:.2f} Y{y:.2f}, over that of the lower right one at X{right:.2f} Y{y:.2f} and over that of the upper left one at "
+            f"X{x:.2f} Y{top:.2f}. Z is counted from the floor of the cavity: with the nozzle on the glass beside the mould, send "
+            f"G92 Z{-mould.floor_z:g}."
+        )
+    return words
+
+
+def _write_pictures(skin: Skin, distortions: list[Distortion], report: dict[str, Any], registration: list[str], folder: Path) -> None:
     from skinfab.report.html import write_html
     from skinfab.report.preview import draw_preview
 
     draw_preview(skin, distortions, report, folder / "preview.png")
     pictures = {"The skin at a glance": folder / "preview.png", "The flat pieces, to scale": folder / "flat.svg"}
-    write_html(report, folder / "report.html", pictures=pictures)
+    write_html(report, folder / "report.html", pictures=pictures, registration=registration)

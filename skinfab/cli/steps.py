@@ -141,7 +141,7 @@ def place_sensors(skin: Skin, material: Material, file: Path | None) -> tuple[tu
     """Sensors as a file says or automatic ones, checked, and what the user should be told."""
     from skinfab.placement.auto import place
     from skinfab.placement.check import validate
-    from skinfab.placement.sensors_file import place_from_file
+    from skinfab.placement.requested import place_from_file
 
     if file is None:
         sensors, warnings = place(skin.mesh, skin.pieces, material=material, seed=skin.seed)

@@ -45,7 +45,7 @@ def test_a_file_of_ones_own(tmp_path: Path) -> None:
         ("size = [350, 350]", "size = [350]", "two numbers"),
         ("size = [350, 350]", "size = [350, -1]", "bed, size is -1"),
         ("[bed]", "bed = 3\n[bad]", "unknown field 'bad'"),
-        ("retract = 0.5", "retract = 0.4", "make them equal"),
+        ("retract = 0.2", "retract = 0.4", "make them equal"),
         ("travel = 10", "travel = 1.65", "heights"),
         ("flow_min = 0.5", "flow_min = 50", "flow_min 50 is above flow_max"),
         ("[bed]", "[bed", "not a TOML file"),
