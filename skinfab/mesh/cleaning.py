@@ -143,13 +143,17 @@ def _enclosing_pairs(V: Points, top: Topology, balanced: NDArray[np.bool_]) -> I
         x, y = x / max(np.linalg.norm(x), 1e-300), y / max(np.linalg.norm(y), 1e-300)
         turn = np.arctan2(apex @ y, apex @ x)
         # A face that runs along the edge has the solid on its clockwise side: match it with the next
-        # face that way which runs back, as brackets match.
-        order = group[np.argsort(-turn, kind="stable")]
+        # face that way which runs back, as brackets match; twice round, since a circle has no start.
+        order = group[np.argsort(-turn, kind="stable")].tolist()
         waiting: list[int] = []
-        for s in np.concatenate([order, order]).tolist():
-            if forward[s] and s not in waiting and not any(s == a for a, _ in out[-len(group) :]):
+        seen: set[int] = set()
+        for s in order + order:
+            if s in seen or not (forward[s] or waiting):
+                continue
+            seen.add(s)
+            if forward[s]:
                 waiting.append(s)
-            elif not forward[s] and waiting and not any(s == b for _, b in out[-len(group) :]):
+            else:
                 out.append((waiting.pop(), s))
     return np.array(out, dtype=np.int64).reshape(-1, 2)
 

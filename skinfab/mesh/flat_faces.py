@@ -42,7 +42,7 @@ def merge_flat_faces(V: Points, F: IntArray) -> tuple[IntArray, int]:
     --------
     >>> V = np.array([[0.0, 0, 0], [1, 0, 0], [2, 0, 0], [1, 1, 0]])
     >>> merge_flat_faces(V, np.array([[0, 1, 2], [0, 2, 3]]))[0].tolist()  # 0-1-2 is flat: 0-2-3 is split at 1
-    [[0, 1, 3], [3, 1, 2]]
+    [[2, 3, 1], [1, 3, 0]]
     """
     merged = 0
     for _ in range(_ROUNDS):
