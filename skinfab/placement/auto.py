@@ -181,29 +181,36 @@ def _contacts(space: Space, spirals: Sequence[ContactSpiral], namer: Namer, per_
 
 
 def _fill(region: Region, spirals: Sequence[ContactSpiral], namer: Namer, limit: int, rng: np.random.Generator) -> int:
-    """Spirals from the largest down, packed from one end; one that stays alone sits in the middle instead."""
-    if limit == 1:
-        alone = next(filter(None, (best_in(region, pattern, rng, packed=False) for pattern in spirals)), None)
-        if alone:
-            namer.add(region.space, alone)
-        return 1 if alone else 0
+    """Spirals from the largest down: spread out where as large ones fit so, else packed from one end."""
+    found = _series(region, spirals, limit, rng, packed=False)
+    if 1 < limit:
+        packed = _series(region, spirals, limit, rng, packed=True)
+        if _covered(packed) > _covered(found):
+            found = packed
+    for sensor in found:
+        namer.add(region.space, sensor)
+    return len(found)
+
+
+def _series(region: Region, spirals: Sequence[ContactSpiral], limit: int, rng: np.random.Generator, *, packed: bool) -> list[Sensor]:
+    """One sensor after the other on a copy of the region, up to `limit`."""
     found: list[Sensor] = []
-    trial = _copy(region)
+    trial = _copy(region) if limit > 1 else region
     k = 0
     while k < len(spirals) and len(found) < limit:
-        sensor = None if found and spirals[k].s < _FILL_SIZE else best_in(trial, spirals[k], rng, packed=True)
+        sensor = None if found and spirals[k].s < _FILL_SIZE else best_in(trial, spirals[k], rng, packed=packed)
         if sensor is None:
             k += 1
             continue
         found.append(dataclasses.replace(sensor, id=f"trial {len(found)}"))
-        trial.space.add(found[-1])
-    if len(found) == 1:
-        pattern = found[0].pattern
-        assert isinstance(pattern, ContactSpiral)
-        found = [best_in(region, pattern, rng, packed=False) or found[0]]
-    for sensor in found:
-        namer.add(region.space, sensor)
-    return len(found)
+        if limit > 1:
+            trial.space.add(found[-1])
+    return found
+
+
+def _covered(sensors: Sequence[Sensor]) -> float:
+    """Area of their discs, but for the factor pi/4, mm^2."""
+    return float(sum(s.pattern.s**2 for s in sensors if isinstance(s.pattern, ContactSpiral)))
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,4 +1,4 @@
-"""Placing the sensors that a file asks for."""
+"""Placing the sensors that `--sensors FILE.toml` asks for; `sensors_file` says how it is written."""
 
 from __future__ import annotations
 

@@ -135,6 +135,9 @@ class Space:
 
     def fits(self, sensor: Sensor, *, between_creases: bool) -> bool:
         """Exactly: on the piece, off its edges and the other sensors, and across no crease if so asked."""
+        # Most that do not fit are told here, without the words for it.
+        if distance(_curves(sensor), self.edges) < sensor.pattern.bead / 2 + self.material.margin:
+            return False
         if find_misfits(self.piece, sensor, self.sensors, material=self.material, edges=self.edges, locator=self.locator):
             return False
         if not between_creases:

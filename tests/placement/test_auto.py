@@ -48,6 +48,23 @@ def test_a_rectangle_is_packed_with_the_largest_first(sheet: Callable) -> None:
     assert again == sensors
 
 
+def test_a_tight_fit_is_found_off_the_raster(sheet: Callable) -> None:
+    # In this square s = 20 fits only along the diagonal, with some tenths of a millimetre to spare.
+    for side, s in ((26.0, 20), (25.0, 15)):
+        mesh, piece = sheet(side, side, step=side)
+        sensors, _ = place(mesh, [piece], material=MATERIAL)
+        assert sizes(sensors) == [s]
+        assert abs(np.sin(4 * sensors[0].angle)) < 0.3 and abs(np.cos(2 * sensors[0].angle)) < 0.2 or s == 15
+
+
+def test_sensors_spread_over_a_piece_with_room_to_spare(sheet: Callable) -> None:
+    mesh, piece = sheet(300, 80, step=10)
+    sensors, _ = place(mesh, [piece], material=MATERIAL)
+    assert sizes(sensors) == [45] * 4
+    along = np.sort([s.path.bbox.mean(axis=0)[0] for s in sensors])
+    assert along[0] < 100 and along[-1] > 200  # packed from one end they would all lie on 4 x 60 mm or less
+
+
 def test_options_narrow_it_down(sheet: Callable) -> None:
     mesh, piece = sheet(60, 100)
     options = AutoOptions(kinds=("contact-spiral",), sizes=(15, 20), per_piece=3)
