@@ -41,7 +41,7 @@ def flatten_disk(V: FloatArray, F: NDArray[np.int64], *, scale: FloatArray | Non
     Raises
     ------
     InputError
-        The mesh is not a disk.
+        The mesh is not a disk, or a coordinate is not finite.
 
     Examples
     --------
@@ -53,6 +53,9 @@ def flatten_disk(V: FloatArray, F: NDArray[np.int64], *, scale: FloatArray | Non
     """
     topology = topology or Topology(F)
     loop = require_disk(topology, len(V))
+    if not np.isfinite(V).all():
+        wrong = int(np.flatnonzero(~np.isfinite(V).all(axis=1))[0])
+        raise InputError(f"vertex {wrong} has a coordinate that is not a finite number; mend it in the mesh")
     corners = intrinsic(V, F)
     u = np.zeros(len(V)) if scale is None else scale
     inner = np.ones(len(V), dtype=bool)

@@ -40,11 +40,14 @@ def harmonic(V: FloatArray, F: IntArray) -> FloatArray:
 
 def arap(V: FloatArray, F: IntArray) -> FloatArray:
     """As rigid as possible (Liu et al. 2008), from Tutte's embedding; (n, 2) mm."""
-    require_disk(Topology(F), len(V))
+    loop = require_disk(Topology(F), len(V))
+    start = tutte_embedding(V, F)
     data = igl.ARAPData()
     data.max_iter = _ITERATIONS
-    igl.arap_precomputation(V, F, 2, np.zeros(0, dtype=np.int32), data)
-    return _finished(V, F, igl.arap_solve(np.zeros((0, 2)), data, tutte_embedding(V, F)), "arap")
+    # Nothing held, the system is singular, and rounding decides whether it factors.
+    held = loop[:1].astype(np.int32)
+    igl.arap_precomputation(V, F, 2, held, data)
+    return _finished(V, F, igl.arap_solve(start[held], data, start), "arap")
 
 
 def slim(V: FloatArray, F: IntArray) -> FloatArray:

@@ -50,7 +50,8 @@ def cut_to_disk(topology: Topology, weight: FloatArray, n_vertices: int, *, star
     sources = _far_points(graph, 4) if start is None else np.array([start])
     if topology.euler == 2:
         distance, before = shortest_tree(graph, sources[:1])
-        return topology.edge_ids(trace(before, int(np.argmax(distance))))
+        slit = topology.edge_ids(trace(before, int(np.argmax(distance))))
+        return slit if len(slit) > 1 else _lengthen(topology, weight, int(slit[0]))
     cuts = [_prune(topology, _tree_cotree(topology, weight, shortest_tree(graph, np.array([s])))) for s in sources]
     return min(cuts, key=lambda c: float(weight[c].sum()))
 
@@ -82,6 +83,13 @@ def _tree_cotree(topology: Topology, weight: FloatArray, tree: tuple[FloatArray,
     for v in topology.E[closing].ravel().tolist():
         cut[topology.edge_ids(trace(before, v))] = True
     return np.flatnonzero(cut)
+
+
+def _lengthen(topology: Topology, weight: FloatArray, edge: int) -> IntArray:
+    """The edge and the cheapest next to it: between two vertices alone a slit does not open."""
+    cost = np.where(np.isin(topology.E, topology.E[edge]).any(axis=1), weight, np.inf)
+    cost[edge] = np.inf
+    return np.array([edge, np.argmin(cost)])
 
 
 def _prune(topology: Topology, cut: IntArray) -> IntArray:

@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from skinfab.errors import InputError, RefusedError, SkinfabError
 from skinfab.mesh.model import Mesh
 from skinfab.seams.cut import OpenPiece, mesh_edges, open_pieces
 from skinfab.seams.darts import grow_dart
@@ -34,7 +35,7 @@ def refine_seams(
 ) -> tuple[BoolArray, list[Judged]]:
     """Add seams to `cut` until every piece is a disk that keeps to `limits`.
 
-    It ends: each round cuts at least one more edge of a piece that failed, and single triangles are good.
+    It ends: each round cuts at least one more edge of a piece that failed, or says why it cannot.
 
     Parameters
     ----------
@@ -54,6 +55,13 @@ def refine_seams(
     cut : (e,) bool
     pieces : list of (OpenPiece, Verdict)
         By first face.
+
+    Raises
+    ------
+    InputError
+        No seam opens a piece to a disk: the mesh is not manifold or not consistently wound.
+    RefusedError
+        A single triangle breaks `limits`.
     """
     cut = cut.copy()
     todo = [(piece, 0) for piece in open_pieces(mesh, cut)]
@@ -61,6 +69,7 @@ def refine_seams(
     finished_area = 0.0
     while todo:
         piece, darts = todo.pop()
+        verdict = None
         if not piece.is_disk:
             topology = piece.topology
             edge_weight = weight[mesh_edges(mesh, piece, np.arange(len(topology.E)))]
@@ -74,6 +83,8 @@ def refine_seams(
                     progress(finished_area / mesh.area)
                 continue
             opened, darts = _mend(mesh, piece, verdict, weight, darts)
+        if cut[opened].all():
+            raise _stuck(mesh, piece, verdict, limits)
         cut[opened] = True
         parts = open_pieces(mesh, cut, faces=piece.faces)
         todo += [(part, darts if len(parts) == 1 else 0) for part in parts]
@@ -91,3 +102,19 @@ def _mend(mesh: Mesh, piece: OpenPiece, verdict: Verdict, weight: NDArray[np.flo
     else:
         ends = farthest_faces(piece, verdict.UV)
     return split(mesh, piece, ends, weight), 0
+
+
+def _stuck(mesh: Mesh, piece: OpenPiece, verdict: Verdict | None, limits: Limits) -> SkinfabError:
+    """Why a piece that is not good cannot be cut any further."""
+    where = f"face {int(piece.faces[0])}"
+    if verdict is None:
+        return InputError(
+            f"no seam opens the {len(piece.faces)} faces about {where} to a disk: edges are non-manifold or wound both ways; use --repair"
+        )
+    if verdict.too_large:
+        (w, h), (W, H) = verdict.UV.max(axis=0), limits.size
+        return RefusedError(
+            f"{where} alone is {w:.0f} x {h:.0f} mm and does not fit the bed ({W:.0f} x {H:.0f} mm); "
+            "subdivide the mesh or choose a larger printer"
+        )
+    return RefusedError(f"{where} alone has mean d {verdict.distortion.mean:.3f}, over the bound {limits.mean:g}; use --repair")

@@ -25,8 +25,9 @@ _CORE = 0.3
 
 def farthest_faces(piece: OpenPiece, UV: FloatArray) -> tuple[int, int]:
     """The two faces at the ends of the flat shape's long side (the piece frame's x)."""
-    x = UV[piece.F].mean(axis=1)[:, 0]
-    return int(np.argmin(x)), int(np.argmax(x))
+    x, y = UV[piece.F].mean(axis=1).T
+    order = np.lexsort((y, x))  # y tells two faces above each other apart
+    return int(order[0]), int(order[-1])
 
 
 def overlapping_faces(mesh: Mesh, piece: OpenPiece, UV: FloatArray) -> tuple[int, int]:
