@@ -36,7 +36,7 @@ class WrapStrain:
     max: float
 
 
-def wrap_strain(mesh: Mesh, piece: Piece, path: Path, *, step: float = 0.25) -> WrapStrain:
+def wrap_strain(mesh: Mesh, piece: Piece, path: Path, *, step: float = 0.25, locator: Locator | None = None) -> WrapStrain:
     """Integrate the stretch of putting `piece` back on `mesh` along a path on it.
 
     Parameters
@@ -47,6 +47,8 @@ def wrap_strain(mesh: Mesh, piece: Piece, path: Path, *, step: float = 0.25) -> 
         In the piece frame.
     step : float, mm
         Longest distance of two samples; the midpoint rule over pieces of at most this length.
+    locator : Locator, optional
+        Of the piece, where it is at hand: making one takes most of the time.
 
     Raises
     ------
@@ -61,7 +63,7 @@ def wrap_strain(mesh: Mesh, piece: Piece, path: Path, *, step: float = 0.25) -> 
     WrapStrain(mean=1.0, max=1.0)
     """
     points, tangents, lengths = _samples(path, step)
-    face = Locator(piece.UV, piece.F).faces(points)
+    face = (locator or Locator(piece.UV, piece.F)).faces(points)
     if (face < 0).any():
         x, y = points[np.argmax(face < 0)]
         raise InputError(f"the path leaves piece {piece.id} near ({x:.1f}, {y:.1f}) mm; wrap strain needs all of it on the piece")

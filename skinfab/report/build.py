@@ -17,6 +17,7 @@ from skinfab.flatten.distortion import Distortion
 from skinfab.material import Material
 from skinfab.patterns.registry import parameters
 from skinfab.pieces import Piece
+from skinfab.placement.locate import Locator
 from skinfab.placement.sensor import Sensor
 from skinfab.placement.wrap_strain import wrap_strain
 from skinfab.skin import Skin
@@ -74,7 +75,7 @@ def build_report(
         "pieces": [_piece(piece, d) for piece, d in zip(skin.pieces, distortions, strict=True)],
         "distortion": _overall(skin, distortions),
         "seam_mm": float(np.linalg.norm(np.subtract(*skin.mesh.V[np.reshape(skin.seams, (-1, 2)).T]), axis=1).sum()),
-        "sensors": [_sensor(skin, sensor, material) for sensor in skin.sensors],
+        "sensors": _sensors(skin, material),
         "gcode": [_plain(facts) for facts in gcode],
         "moulds": [_plain(facts) for facts in moulds],
         "recipe": _plain(recipe or {}),
@@ -142,10 +143,16 @@ def _overall(skin: Skin, distortions: Sequence[Distortion]) -> dict[str, float]:
     return {"mean": float(np.average(d, weights=area)), "p99": float(p99), "max": float(d.max())}
 
 
-def _sensor(skin: Skin, sensor: Sensor, material: Material) -> dict[str, Any]:
+def _sensors(skin: Skin, material: Material) -> list[dict[str, Any]]:
+    used = {sensor.piece for sensor in skin.sensors}
+    locators = {piece.id: Locator(piece.UV, piece.F) for piece in skin.pieces if piece.id in used}
+    return [_sensor(skin, sensor, material, locators[sensor.piece]) for sensor in skin.sensors]
+
+
+def _sensor(skin: Skin, sensor: Sensor, material: Material, locator: Locator) -> dict[str, Any]:
     length = sensor.path.length
     r = resistance(length, material.ink)
-    strain = wrap_strain(skin.mesh, skin.piece(sensor.piece), sensor.path)
+    strain = wrap_strain(skin.mesh, skin.piece(sensor.piece), sensor.path, locator=locator)
     return {
         "id": sensor.id,
         "kind": sensor.pattern.kind,

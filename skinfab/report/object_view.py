@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from skinfab.pieces import Piece
 from skinfab.placement.locate import Locator
-from skinfab.placement.sensor import Sensor
 from skinfab.report.raster import rasterise, visible_points
 from skinfab.skin import Skin
 
@@ -61,13 +60,15 @@ def piece_colour(k: int) -> FloatArray:
     return colour
 
 
-def object_image(skin: Skin, view: View, *, width: int, height: int) -> FloatArray:
+def object_image(skin: Skin, view: View, lines: FloatArray, *, width: int, height: int) -> FloatArray:
     """The object as it is seen from one side, as large as fits the picture.
 
     Parameters
     ----------
     skin : Skin
     view : View
+    lines : (k, 3) float, mm
+        Points of the sensors on the object, as `sensor_points` gives them.
     width, height : int, pixels
 
     Returns
@@ -89,17 +90,20 @@ def object_image(skin: Skin, view: View, *, width: int, height: int) -> FloatArr
     face, depth = rasterise(project(skin.mesh.V), skin.mesh.F, shape=(rows, columns))
     image = np.append(_shaded_faces(skin, view), [[1.0, 1.0, 1.0]], axis=0)[face]  # -1, no face, is the white at the end
     slack = _SLACK * scale * float(np.linalg.norm(high - low))
-    lines = [(SENSOR_COLOUR, sensor_points(skin, sensor, spacing=0.5 / scale)) for sensor in skin.sensors]
-    for colour, points in [(SEAM_COLOUR, _seam_points(skin, 0.5 / scale)), *lines]:
+    for colour, points in [(SEAM_COLOUR, _seam_points(skin, 0.5 / scale)), (SENSOR_COLOUR, lines)]:
         _dot(image, visible_points(project(points), depth, slack=slack), colour)
     return image.reshape(height, _SUPERSAMPLING, width, _SUPERSAMPLING, 3).mean(axis=(1, 3))
 
 
-def sensor_points(skin: Skin, sensor: Sensor, *, spacing: float) -> FloatArray:
-    """Points of a sensor's conductor on the object, at most `spacing` mm apart when flat, (k, 3) mm."""
-    piece = skin.piece(sensor.piece)
-    count = max(int(np.ceil(sensor.path.length / spacing)), 1)
-    return on_object(skin, piece, sensor.path.point_at(np.linspace(0, 1, count + 1)))
+def sensor_points(skin: Skin, *, spacing: float) -> FloatArray:
+    """Points of all conductors on the object, at most `spacing` mm apart when flat, (k, 3) mm."""
+    parts = [np.empty((0, 3))]
+    for piece in skin.pieces:
+        paths = [sensor.path for sensor in skin.sensors_on(piece.id)]
+        flat = [path.point_at(np.linspace(0, 1, max(int(np.ceil(path.length / spacing)), 1) + 1)) for path in paths]
+        if flat:
+            parts.append(on_object(skin, piece, np.vstack(flat)))
+    return np.vstack(parts)
 
 
 def on_object(skin: Skin, piece: Piece, points: FloatArray) -> FloatArray:

@@ -12,7 +12,7 @@ import numpy as np
 from skinfab.drawings.sheet import sheet_offsets
 from skinfab.files import atomic_write
 from skinfab.flatten.distortion import Distortion
-from skinfab.report.object_view import SEAM_COLOUR, SENSOR_COLOUR, View, object_image, piece_colour
+from skinfab.report.object_view import SEAM_COLOUR, SENSOR_COLOUR, View, object_image, piece_colour, sensor_points
 from skinfab.report.raster import rasterise
 from skinfab.report.words import count, percent
 from skinfab.skin import Skin
@@ -59,7 +59,10 @@ def _draw_object(axes: Axes, skin: Skin) -> None:
     # The longer side of the object lies across the picture; what one view does not show, the opposite one does.
     front = -60.0 if x >= y else -30.0
     views = [View(azimuth, _ELEVATION) for azimuth in (front, front + 180)]
-    axes.imshow(np.hstack([object_image(skin, view, width=width, height=height) for view in views]), interpolation="none", aspect="equal")
+    # Half a pixel of the picture, whichever way the object is turned.
+    lines = sensor_points(skin, spacing=0.25 * max(x, y, z) / max(width, height))
+    images = [object_image(skin, view, lines, width=width, height=height) for view in views]
+    axes.imshow(np.hstack(images), interpolation="none", aspect="equal")
     size = f"{x:.0f} x {y:.0f} x {z:.0f}"
     axes.set_title(f"The object from two sides, {size} mm; seams in red", fontsize=10, loc="left")
     axes.set_axis_off()

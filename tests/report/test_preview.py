@@ -12,7 +12,7 @@ from skinfab.flatten.distortion import Distortion
 from skinfab.material import load_material
 from skinfab.progress import PHASES
 from skinfab.report.build import build_report
-from skinfab.report.object_view import SEAM_COLOUR, SENSOR_COLOUR, View, object_image, on_object, piece_colour
+from skinfab.report.object_view import SEAM_COLOUR, SENSOR_COLOUR, View, object_image, on_object, piece_colour, sensor_points
 from skinfab.report.preview import draw_preview
 from skinfab.skin import Skin, Source
 
@@ -65,7 +65,8 @@ def test_many_pieces_and_no_sensors(skin: Skin, distortions: list[Distortion], t
 def test_front_and_back_of_a_box(skin: Skin) -> None:
     # From straight in front (-y) only the wall y = 0 is seen: the seam at its left edge, the first 60 mm of the strip.
     skin = dataclasses.replace(skin, sensors=skin.sensors[1:])
-    image = object_image(skin, View(azimuth=-90.0, elevation=0.0), width=132, height=112)
+    lines = sensor_points(skin, spacing=0.2)
+    image = object_image(skin, View(azimuth=-90.0, elevation=0.0), lines, width=132, height=112)
     drawn = ~near(image, (1, 1, 1))
     rows, columns = np.flatnonzero(drawn.any(axis=1)), np.flatnonzero(drawn.any(axis=0))
     assert np.ptp(rows) + 1 == pytest.approx(100, abs=2) and np.ptp(columns) + 1 == pytest.approx(120, abs=2)  # 50 x 60 mm
@@ -73,7 +74,7 @@ def test_front_and_back_of_a_box(skin: Skin) -> None:
     assert red.any() and np.flatnonzero(red.any(axis=0)).max() < columns.min() + 6
     assert near(image, SENSOR_COLOUR, 0.3).sum() > 50  # C1 is on this wall
     # From behind, neither.
-    behind = object_image(skin, View(azimuth=90.0, elevation=0.0), width=132, height=112)
+    behind = object_image(skin, View(azimuth=90.0, elevation=0.0), lines, width=132, height=112)
     assert not near(behind, SEAM_COLOUR, 0.25).any() and not near(behind, SENSOR_COLOUR, 0.3).any()
 
 
