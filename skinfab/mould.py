@@ -130,7 +130,7 @@ def casting_mould(
 
 
 def skin_moulds(skin: Skin, *, material: Material) -> list[CastingMould]:
-    """One mould a piece: a wire slot for either terminal of each sensor, a lip on one side of each seam."""
+    """One mould a piece that can be cast: a wire slot for either terminal of each sensor, a lip on one side of each seam."""
     sewn: set[str] = set()
     lips: dict[int, list[NDArray[np.float64]]] = {}
     for side in seam_sides(skin.pieces):
@@ -145,7 +145,13 @@ def skin_moulds(skin: Skin, *, material: Material) -> list[CastingMould]:
             lips=lips.get(k, []),
         )
         for k, piece in enumerate(skin.pieces)
+        if can_be_cast(piece, material)
     ]
+
+
+def can_be_cast(piece: Piece, material: Material) -> bool:
+    """Whether a piece is large enough to be handled: a square of half the least neck, at least."""
+    return piece.area >= (material.neck / 2) ** 2
 
 
 def write_mould(mould: CastingMould, path: str | Path) -> None:

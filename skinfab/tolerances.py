@@ -78,3 +78,9 @@ RASTER_CELLS = 360_000
 
 #: Finest step of that raster; found places are verified exactly, so it decides only how tight a fit is found.
 RASTER_STEP_MM = 0.2
+
+#: Boundary edges push a vertex away within this fraction of the median boundary edge, so that flat pieces do not overlap.
+APART_REACH = 0.03
+
+#: Weight of that push beside the mean d: only its reach matters, it grows without bound towards contact.
+APART_WEIGHT = 1e-5

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,6 +17,9 @@ if TYPE_CHECKING:
     from skinfab.mould import CastingMould
     from skinfab.progress import Progress, Stopwatch
     from skinfab.skin import Skin
+
+#: Warnings shown on the terminal; the report has all.
+_SHOWN = 8
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -41,11 +45,15 @@ def run(args: argparse.Namespace) -> int:
 
     watch = Stopwatch()
     with staged_folder(args.output) as folder, terminal_progress(quiet=args.json) as progress:
-        report = _make(args, folder, watch, progress)
+        report, said = _make(args, folder, watch, progress)
     if args.json:
         print(json.dumps(report, allow_nan=False))
         return 0
-    steps.say(report["warnings"], kind="warning")
+    # What was said on reading is not said again.
+    warnings = report["warnings"][said:]
+    steps.say(warnings[:_SHOWN], kind="warning")
+    if len(warnings) > _SHOWN:
+        steps.say([f"{len(warnings) - _SHOWN} more warnings are in {args.output / 'report.html'}"], kind="warning")
     d, ink = report["distortion"], sum(g["ink_mm3"] for g in report["gcode"])
     print(
         f"{args.output}: {len(report['pieces'])} pieces, d mean {d['mean']:.4f}; {len(report['sensors'])} sensors, {ink:.0f} mm^3 of ink, "
@@ -55,9 +63,11 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def _make(args: argparse.Namespace, folder: Path, watch: Stopwatch, progress: Progress) -> dict[str, Any]:
+def _make(args: argparse.Namespace, folder: Path, watch: Stopwatch, progress: Progress) -> tuple[dict[str, Any], int]:
+    """The report, and how many of its warnings the user has read already."""
     from gcode.write import write_skin
     from skinfab.document import save_skin
+    from skinfab.mould import can_be_cast
     from skinfab.progress import part_of, peak_rss_mb
     from skinfab.recipe import recipe
     from skinfab.report.build import build_report, write_report
@@ -82,6 +92,11 @@ def _make(args: argparse.Namespace, folder: Path, watch: Stopwatch, progress: Pr
     progress(0.8, "making moulds")
     with watch.phase("mould"):
         moulds = _write_moulds(skin, folder / "mould", used)
+    uncast = [
+        f"piece {piece.id} is too small to be cast ({piece.area:.2g} mm^2), so it has no mould: leave it bare"
+        for piece in skin.pieces
+        if not can_be_cast(piece, used.material)
+    ]
     progress(0.9, "drawing")
     save_skin(skin, folder / "skin.skin")
     _write_drawings(skin, folder)
@@ -94,13 +109,13 @@ def _make(args: argparse.Namespace, folder: Path, watch: Stopwatch, progress: Pr
         recipe=recipe({m.piece: m.cavity_ml for m in moulds}, used.material, lips_ml={m.piece: m.lip_ml for m in moulds}).as_dict(),
         timing_s=watch.timing_s(),
         peak_rss_mb=peak_rss_mb(),
-        warnings=[*loaded.notes, *warnings, *remarks, *(flaw for m in moulds for flaw in m.warnings)],
+        warnings=[*loaded.notes, *warnings, *remarks, *(flaw for m in moulds for flaw in m.warnings), *uncast],
     )
-    _write_pictures(skin, distortions, report, _registration(moulds, {w.piece: w.plan.offset for w in printed}), folder)
+    _write_pictures(skin, distortions, report, _registration(moulds, printed, used), folder)
     # The pictures take a while, and the report says how long all of it took.
     report |= {"timing_s": watch.timing_s(), "peak_rss_mb": peak_rss_mb()}
     write_report(report, folder / "report.json")
-    return report
+    return report, len(loaded.notes)
 
 
 def _gcode_facts(written: PieceGcode) -> dict[str, Any]:
@@ -136,20 +151,14 @@ def _write_drawings(skin: Skin, folder: Path) -> None:
     write_flat_obj(skin.mesh, skin.pieces, sheet_offsets(skin.pieces), folder / "flat.obj")
 
 
-def _registration(moulds: list[CastingMould], offsets: dict[str, tuple[float, float]]) -> list[str]:
-    """How to lay each mould on the bed so that the ink falls where the drawing says."""
-    words = []
-    for mould in moulds:
-        if mould.piece not in offsets:
-            continue
-        (x, y), (right, _), (_, top) = mould.marks + offsets[mould.piece]
-        words.append(
-            f"{mould.piece}: home X and Y, then lay the mould on the bed so that the nozzle stands over the corner of its lower left mark "
-            f"at X{x:.2f} Y{y:.2f}, over that of the lower right one at X{right:.2f} Y{y:.2f} and over that of the upper left one at "
-            f"X{x:.2f} Y{top:.2f}. Z is counted from the floor of the cavity: with the nozzle on the glass beside the mould, send "
-            f"G92 Z{-mould.floor_z:g}."
-        )
-    return words
+def _registration(moulds: list[CastingMould], printed: Sequence[PieceGcode], used: steps.Profiles) -> list[str]:
+    """How to bring mould and printer together, a step each."""
+    from skinfab.report.registration import MouldPlace, registration_steps
+
+    by_piece = {mould.piece: mould for mould in moulds}
+    places = [MouldPlace(w.piece, f"gcode/{w.file.name}", by_piece[w.piece].marks + w.plan.offset) for w in printed]
+    # The program counts its heights from the floor of the cavity, which lies above the glass.
+    return registration_steps(places, home=used.printer.home, glass_z=-used.material.mould.floor)
 
 
 def _write_pictures(skin: Skin, distortions: list[Distortion], report: dict[str, Any], registration: list[str], folder: Path) -> None:

@@ -33,6 +33,8 @@ def run(args: argparse.Namespace) -> int:
         raise InputError(f"{args.skin} has no flat pieces to cast; cut it first with skinfab segment")
     material = load_material(skin.material)
     moulds = skin_moulds(skin, material=material)
+    if not moulds:
+        raise InputError(f"{args.skin}: every piece is too small to be cast; scale the object up")
     weighed = recipe({m.piece: m.cavity_ml for m in moulds}, material, lips_ml={m.piece: m.lip_ml for m in moulds})
     try:
         args.output.mkdir(parents=True, exist_ok=True)

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csc_array
 
 from skinfab.errors import InputError
+from skinfab.flatten._barrier import barrier_assemble, barrier_energy, first_crossing
 from skinfab.flatten._dirichlet import assemble, energies, first_collapse
 from skinfab.flatten.distortion import local_triangles
 from skinfab.flatten.laplacian import mollified_lengths
@@ -42,6 +43,26 @@ class Refinement:
     converged: bool
 
 
+@dataclass(frozen=True, eq=False)
+class Apart:
+    """Keeps a boundary loop from crossing itself (after Smith and Schaefer 2015, "Bijective Parameterization with Free
+    Boundaries"): a barrier within `reach`, and no step past the first contact.
+
+    Parameters
+    ----------
+    loop : (b,) int64
+        Boundary vertices in order.
+    reach : float, mm
+        Edges nearer to a vertex than this push it away.
+    weight : float
+        Of the barrier beside the mean d.
+    """
+
+    loop: NDArray[np.int64]
+    reach: float
+    weight: float
+
+
 class IsometricSolver:
     """Built once for a mesh, it refines any flattening of it.
 
@@ -66,6 +87,7 @@ class IsometricSolver:
         self.weight = twice_area / twice_area.sum()
         self.gradients = _basis_gradients(rest, twice_area)
         self._slots, self._pattern = _sparsity(F, self.n)
+        self._indptr = self._pattern.indptr.astype(np.int64)
         self._cholesky: Cholesky | None = None
 
     @property
@@ -74,7 +96,13 @@ class IsometricSolver:
         return self._cholesky.factorisations if self._cholesky else 0
 
     def refine(
-        self, UV: FloatArray, *, max_steps: int = 60, tolerance: float = NEWTON_DECREASE, hopeless_above: float = np.inf
+        self,
+        UV: FloatArray,
+        *,
+        max_steps: int = 60,
+        tolerance: float = NEWTON_DECREASE,
+        hopeless_above: float = np.inf,
+        apart: Apart | None = None,
     ) -> Refinement:
         """Newton steps until the promised decrease of the mean d is below `tolerance` x (mean d - 4).
 
@@ -86,6 +114,8 @@ class IsometricSolver:
         tolerance : float
         hopeless_above : float
             Stop when not even twice the promised decrease would bring the mean d down to this.
+        apart : Apart, optional
+            Keep the boundary from crossing itself; the start's must not.
 
         Raises
         ------
@@ -93,19 +123,19 @@ class IsometricSolver:
             The start has a flipped or collapsed triangle.
         """
         u = np.ascontiguousarray(UV, dtype=np.float64).copy()
-        energy = [energies(u, self.F, self.gradients, self.weight)]
+        energy = [self._energy(u, apart)]
         if not np.isfinite(energy[0]):
             raise InputError("the start of the refinement has flipped triangles; untangle it first")
         converged = False
         while len(energy) <= max_steps:
-            step, slope = self._newton_step(u)
+            step, slope = self._newton_step(u, apart)
             # The quadratic model promises -slope / 2.
             if energy[-1] + slope > hopeless_above:
                 break
             if -slope <= tolerance * max(energy[-1] - 4, tolerance):
                 converged = True
                 break
-            u_next, e_next = self._line_search(u, step, slope, energy[-1])
+            u_next, e_next = self._line_search(u, step, slope, energy[-1], apart)
             if e_next >= energy[-1]:
                 converged = True
                 break
@@ -113,8 +143,14 @@ class IsometricSolver:
             energy.append(e_next)
         return Refinement(u, tuple(energy), converged)
 
-    def _newton_step(self, u: FloatArray) -> tuple[FloatArray, float]:
+    def _energy(self, u: FloatArray, apart: Apart | None) -> float:
+        d = energies(u, self.F, self.gradients, self.weight)
+        return d + apart.weight * barrier_energy(u, apart.loop, apart.reach) if apart and np.isfinite(d) else d
+
+    def _newton_step(self, u: FloatArray, apart: Apart | None) -> tuple[FloatArray, float]:
         data, gradient = assemble(u, self.F, self.gradients, self.weight, self._slots, self._pattern.nnz)
+        if apart:
+            barrier_assemble(u, apart.loop, apart.reach, apart.weight, self._indptr, data, gradient)
         # The rigid motions cost nothing: a ridge far below the stiffness fixes them.
         diagonal = self._pattern.indptr[:-1]
         data[diagonal] += NEWTON_RIDGE * data[diagonal].mean()
@@ -126,11 +162,13 @@ class IsometricSolver:
         step = self._cholesky.solve(-gradient)
         return step.reshape(-1, 2), float(gradient @ step)
 
-    def _line_search(self, u: FloatArray, step: FloatArray, slope: float, start: float) -> tuple[FloatArray, float]:
+    def _line_search(self, u: FloatArray, step: FloatArray, slope: float, start: float, apart: Apart | None) -> tuple[FloatArray, float]:
         t = min(1.0, 0.9 * first_collapse(u, step, self.F))
+        if apart:
+            t = min(t, 0.9 * first_crossing(u, step, apart.loop, t))
         for _ in range(40):
             trial = u + t * step
-            e = energies(trial, self.F, self.gradients, self.weight)
+            e = self._energy(trial, apart)
             if e <= start + 1e-4 * t * slope:
                 return trial, e
             t /= 2

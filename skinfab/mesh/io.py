@@ -93,7 +93,7 @@ def load_mesh(path: str | Path, *, units: str | None = None, scale: float = 1.0)
     _check(V, F, path.name)
     notes = []
     if units is None:
-        guess = guess_units(float(np.ptp(V, axis=0).max()) * scale)
+        guess = guess_units(float(np.ptp(V, axis=0).max()))
         units = guess.units
         if units != "mm" or not guess.sure:
             notes.append(guess.reason)

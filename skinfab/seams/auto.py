@@ -109,7 +109,7 @@ def _search(mesh: Mesh, aim: Limits, limits: Limits, neck: float) -> Seams:
 
 
 def _cost(mesh: Mesh, seams: Seams) -> float:
-    """Pieces, seam length and stretch in one number: 0.01 of mean d weighs as much as two pieces or one root of the area in seam."""
+    """Pieces, seam length and stretch in one number: 0.01 of mean d weighs as much as a piece or a root of the area in seam."""
     areas = np.array([mesh.face_areas[piece.faces].sum() for piece, _ in seams.pieces])
     mean = float(np.average([v.distortion.mean for _, v in seams.pieces], weights=areas))
-    return len(seams.pieces) / 2 + seam_length(mesh, seams.cut) / np.sqrt(mesh.area) + 100 * (mean - 4)
+    return len(seams.pieces) + seam_length(mesh, seams.cut) / np.sqrt(mesh.area) + 100 * (mean - 4)

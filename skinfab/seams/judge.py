@@ -7,12 +7,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from skinfab.flatten.bijective import flatten_bijective
 from skinfab.flatten.disk import flatten_isometric
 from skinfab.flatten.distortion import Distortion, measure
 from skinfab.flatten.orient import orient
 from skinfab.mesh.model import Mesh
 from skinfab.seams.cut import OpenPiece
 from skinfab.tolerances import NEWTON_DECREASE, OVERLAP_FRACTION
+
+#: Laid flat without overlap, a piece may be this much more distorted than the bound allows: a dart can still save it.
+_APART_EXCESS = 2.0
 
 
 @dataclass(frozen=True)
@@ -57,11 +61,23 @@ class Verdict:
 def judge(mesh: Mesh, piece: OpenPiece, limits: Limits, *, tolerance: float = NEWTON_DECREASE) -> Verdict:
     """Flatten a disk, to `tolerance` of what is above 4, and hold it against `limits`.
 
-    A piece that cannot keep to the bound is flattened only as far as that takes to see.
+    A piece that cannot keep to the bound is flattened only as far as that takes to see. One that overlaps is
+    flattened anew without overlap where that costs little: it may then need a dart, but not be parted.
     """
-    V = mesh.V[piece.vertices]
-    uv = orient(flatten_isometric(V, piece.F, topology=piece.topology, tolerance=tolerance, hopeless_above=limits.mean))
-    distortion = measure(V, piece.F, uv, topology=piece.topology)
+    V, F, topology = mesh.V[piece.vertices], piece.F, piece.topology
+    uv = flatten_isometric(V, F, topology=topology, tolerance=tolerance, hopeless_above=limits.mean)
+    first = _verdict(mesh, piece, uv, limits)
+    if not first.overlaps or first.too_distorted or first.too_large:
+        return first
+    most = 4 + _APART_EXCESS * (limits.mean - 4)
+    uv = flatten_bijective(V, F, topology=topology, tolerance=tolerance, hopeless_above=most)
+    apart = _verdict(mesh, piece, uv, limits)
+    return first if apart.distortion.mean > most else apart
+
+
+def _verdict(mesh: Mesh, piece: OpenPiece, uv: NDArray[np.float64], limits: Limits) -> Verdict:
+    uv = orient(uv)
+    distortion = measure(mesh.V[piece.vertices], piece.F, uv, topology=piece.topology)
     area = float(mesh.face_areas[piece.faces].sum())
     (w, h), (W, H) = np.ptp(uv, axis=0), sorted(limits.size, reverse=True)
     return Verdict(
