@@ -1,0 +1,72 @@
+"""Libigl's methods behind our door: right side up, at their best scale, on what each is known for."""
+
+import numpy as np
+import pytest
+import shapes
+
+from skinfab.errors import InputError, RefusedError
+from skinfab.flatten import classic
+from skinfab.flatten.classic import arap, harmonic, lscm, slim
+from skinfab.flatten.disk import flatten_isometric
+from skinfab.flatten.distortion import best_scale, measure, singular_values
+from skinfab.tolerances import NEWTON_DECREASE
+
+ALL = [lscm, harmonic, arap, slim]
+
+
+@pytest.mark.parametrize("method", ALL)
+@pytest.mark.parametrize("mesh", [shapes.wavy(), shapes.cap(8), shapes.cylinder_sheet()], ids=["wavy", "hemisphere", "cylinder"])
+def test_right_side_up_at_the_best_scale(method, mesh) -> None:
+    V, F = mesh
+    uv = method(V, F)
+    assert (singular_values(V, F, uv)[:, 1] > 0).all()
+    assert best_scale(V, F, uv) == pytest.approx(1, rel=1e-9)
+
+
+@pytest.mark.parametrize("method", ALL)
+def test_mirrored_faces_too(method) -> None:
+    V, F = shapes.wavy()
+    G = F[:, ::-1].copy()
+    assert (singular_values(V, G, method(V, G))[:, 1] > 0).all()
+
+
+def test_lscm_is_conformal() -> None:
+    error = []
+    for rings in (6, 12, 24):
+        V, F = shapes.cap(rings)
+        s = singular_values(V, F, lscm(V, F))
+        error.append((s[:, 0] / s[:, 1] - 1).mean())
+    assert error[0] > 1.8 * error[1] > 3.2 * error[2] and error[2] < 0.03
+    V, F = shapes.wavy()
+    means = [(lambda s: (s[:, 0] / s[:, 1]).mean())(singular_values(V, F, uv)) for uv in (lscm(V, F), harmonic(V, F))]
+    assert means[0] < 1.05 < 1.2 < means[1]  # a given circle is in a conformal map's way
+
+
+@pytest.mark.parametrize("method", [lscm, arap, slim])
+def test_cylinders_come_out_isometric(method) -> None:
+    V, F = shapes.cylinder_sheet()
+    assert measure(V, F, method(V, F)).mean == pytest.approx(4, abs=1e-4)
+
+
+@pytest.mark.parametrize("mesh", [shapes.wavy(), shapes.cap(8)], ids=["wavy", "hemisphere"])
+def test_slim_reaches_our_optimum_and_no_method_beats_it(mesh) -> None:
+    V, F = mesh
+    ours = measure(V, F, flatten_isometric(V, F)).mean
+    d = {method.__name__: measure(V, F, method(V, F)).mean for method in ALL}
+    assert d["slim"] == pytest.approx(ours, abs=2e-3 * (ours - 4) + 1e-5)
+    assert min(d.values()) > ours - NEWTON_DECREASE * (ours - 4)
+
+
+@pytest.mark.parametrize("method", ALL)
+@pytest.mark.parametrize("mesh", [shapes.sphere(), shapes.holed(), (np.vstack([np.zeros((1, 3)), shapes.wavy()[0]]), shapes.wavy()[1] + 1)])
+def test_what_would_end_the_process_is_refused_first(method, mesh) -> None:
+    """Closed meshes and unused vertices crash libigl."""
+    with pytest.raises(InputError, match="only a disk"):
+        method(*mesh)
+
+
+def test_a_result_that_is_no_number_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    V, F = shapes.wavy()
+    monkeypatch.setattr(classic.igl, "lscm", lambda *_: (np.full((len(V), 2), np.nan), None))
+    with pytest.raises(RefusedError, match="lscm gave coordinates that are not numbers"):
+        lscm(V, F)

@@ -1,0 +1,57 @@
+"""The default method: never flips, never worse than what it starts from, the same for every pose and order."""
+
+import numpy as np
+import pytest
+import shapes
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from skinfab.flatten.bff import flatten_disk
+from skinfab.flatten.disk import flatten_isometric
+from skinfab.flatten.distortion import best_scale, measure, singular_values
+
+
+@settings(max_examples=20, deadline=None)
+@given(st.integers(0, 10_000), st.floats(0, 0.5))
+def test_no_flips_on_random_disks(seed: int, noise: float) -> None:
+    V, F = shapes.random_disk(seed, 60, noise)
+    assert (singular_values(V, F, flatten_isometric(V, F)) > 0).all()
+
+
+@pytest.mark.parametrize("mesh", [shapes.wavy(), shapes.cap(8), shapes.cap(8, 2.4)], ids=["wavy", "hemisphere", "three quarters"])
+def test_better_than_bff(mesh) -> None:
+    V, F = mesh
+    bff = flatten_disk(V, F)
+    assert measure(V, F, flatten_isometric(V, F)).mean < measure(V, F, bff * best_scale(V, F, bff)).mean - 1e-4
+
+
+@pytest.mark.parametrize("radians", [0.3, 0.6, 0.9])
+def test_sphere_caps_keep_to_the_curvature_law(radians: float) -> None:
+    """d - 4 is 0.0021 to 0.0035 K^2 for a compact piece of total curvature K (spec 02, section 2)."""
+    V, F = shapes.cap(24, radians)
+    K = 2 * np.pi * (1 - np.cos(radians))
+    assert 0.0021 < (measure(V, F, flatten_isometric(V, F)).mean - 4) / K**2 < 0.0035
+
+
+@pytest.mark.parametrize("sheet", [shapes.cylinder_sheet, shapes.cone_sheet, shapes.helicoid])
+def test_developables_stay_isometric(sheet) -> None:
+    V, F = sheet()
+    flat = 1e-9 if sheet is not shapes.helicoid else 1e-3  # a ramp about a shaft is not developable, its facets nearly so
+    assert measure(V, F, flatten_isometric(V, F)).mean == pytest.approx(4, abs=flat)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_pose_order_and_unit_change_nothing(seed: int) -> None:
+    V, F = shapes.cap(8, 2.0)
+    d = measure(V, F, flatten_isometric(V, F)).mean
+    W, G, _ = shapes.relabelled(V, F, seed)
+    W = 10.0 ** (6 * (seed - 1)) * (W @ shapes.rotation(seed).T + 1)
+    assert measure(W, G, flatten_isometric(W, G)).mean == pytest.approx(d, abs=1e-5)
+
+
+def test_the_smallest_disks() -> None:
+    V, F = shapes.grid(1, 1, lambda s, t: np.stack([s, t, s * t], axis=1))
+    for faces in (F[:1] * 1, F):
+        used, G = np.unique(faces, return_inverse=True)
+        uv = flatten_isometric(V[used], G.reshape(-1, 3))
+        np.testing.assert_allclose(singular_values(V[used], G.reshape(-1, 3), uv), 1, atol=1e-6)
