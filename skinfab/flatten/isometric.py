@@ -24,6 +24,10 @@ from skinfab.tolerances import MOLLIFY, NEWTON_DECREASE, NEWTON_RIDGE
 
 FloatArray = NDArray[np.float64]
 
+#: Far from the optimum many steps follow that each promise little: from Tutte's start on a ramp of two turns and more,
+#: twice the promise gave up 10 bounds of 26 that were reached in the end, 16 times gave up none and cost no time.
+_HOPE = 16
+
 
 @dataclass(frozen=True, eq=False)
 class Refinement:
@@ -113,7 +117,7 @@ class IsometricSolver:
         max_steps : int
         tolerance : float
         hopeless_above : float
-            Stop when not even twice the promised decrease would bring the mean d down to this.
+            Stop when not even 16 times the promised decrease would bring the mean d down to this.
         apart : Apart, optional
             Keep the boundary from crossing itself; the start's must not.
 
@@ -130,7 +134,7 @@ class IsometricSolver:
         while len(energy) <= max_steps:
             step, slope = self._newton_step(u, apart)
             # The quadratic model promises -slope / 2.
-            if energy[-1] + slope > hopeless_above:
+            if energy[-1] + _HOPE * slope / 2 > hopeless_above:
                 break
             if -slope <= tolerance * max(energy[-1] - 4, tolerance):
                 converged = True

@@ -25,7 +25,7 @@ from skinfab.seams.weights import seam_weights
 BoolArray = NDArray[np.bool_]
 
 #: Seams are searched on about this many triangles.
-_COARSE_FACES = 3000
+_COARSE_FACES = 6000
 
 #: The search aims below the bound by this part of what it allows above 4, because the fine mesh shows more.
 _AIM = 0.7
@@ -35,6 +35,9 @@ _SEARCH_DECREASE = 1e-2
 
 #: Gluing may cost this part of what the bound allows above 4.
 _GLUE_EXCESS = 0.1
+
+#: An object that falls into more pieces than this is hardly meant for a skin: the second way is not tried.
+_MANY = 100
 
 #: A transferred scrap under this part of the surface joins its neighbour.
 _SCRAP = 0.002
@@ -96,20 +99,21 @@ def find_seams(mesh: Mesh, limits: Limits, *, neck: float = 4.0, progress: Calla
 
 def _search(mesh: Mesh, aim: Limits, limits: Limits, neck: float) -> Seams:
     weight = seam_weights(mesh)
-    starts = [np.zeros(len(mesh.topology.E), dtype=bool)]
     creases = crease_seams(mesh)
-    if creases.any():
-        starts.append(creases)
-    found = []
+    starts = [creases] if creases.any() else []
+    starts.append(np.zeros(len(mesh.topology.E), dtype=bool))
+    found: list[Seams] = []
     for start in starts:
         cut, pieces = refine_seams(mesh, start, aim, weight, tolerance=_SEARCH_DECREASE)
         cut, pieces = glue_pieces(mesh, cut, pieces, aim, neck=neck, excess=_GLUE_EXCESS * (limits.mean - 4), tolerance=_SEARCH_DECREASE)
         found.append(Seams(cut, pieces))
+        if len(pieces) > _MANY:
+            break
     return min(found, key=lambda s: _cost(mesh, s))
 
 
 def _cost(mesh: Mesh, seams: Seams) -> float:
-    """Pieces, seam length and stretch in one number: 0.01 of mean d weighs as much as a piece or a root of the area in seam."""
+    """Pieces, seam length and stretch in one number: 0.005 of mean d weighs as much as a piece or a root of the area in seam."""
     areas = np.array([mesh.face_areas[piece.faces].sum() for piece, _ in seams.pieces])
     mean = float(np.average([v.distortion.mean for _, v in seams.pieces], weights=areas))
-    return len(seams.pieces) + seam_length(mesh, seams.cut) / np.sqrt(mesh.area) + 100 * (mean - 4)
+    return len(seams.pieces) + seam_length(mesh, seams.cut) / np.sqrt(mesh.area) + 200 * (mean - 4)

@@ -15,7 +15,7 @@ from skinfab.seams.weights import seam_weights
 
 def coarsen(mesh: Mesh, faces: int) -> Mesh:
     """A mesh of about `faces` triangles of the same topology (quadric edge collapses), or `mesh` itself when it is small."""
-    if len(mesh.F) <= 2 * faces:
+    if len(mesh.F) <= 1.5 * faces:
         return mesh
     V, F = igl.qslim(np.asfortranarray(mesh.V), np.asfortranarray(mesh.F), faces)[:2]
     used, F = np.unique(np.asarray(F, dtype=np.int64), return_inverse=True)

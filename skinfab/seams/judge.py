@@ -85,5 +85,6 @@ def _verdict(mesh: Mesh, piece: OpenPiece, uv: NDArray[np.float64], limits: Limi
         distortion=distortion,
         too_distorted=not distortion.mean <= limits.mean or distortion.flipped > 0,
         overlaps=not distortion.overlap_mm2 <= OVERLAP_FRACTION * area,
-        too_large=bool(w > W or h > H),
+        # What is far from flat yet has no size yet, but more area than the bed has will not fit in any case.
+        too_large=bool(area > W * H or (distortion.mean <= limits.mean and (w > W or h > H))),
     )
