@@ -214,8 +214,20 @@ def test_hopeless_bounds_are_told_early_and_others_are_reached(angle: float) -> 
     full = solver.refine(start)
     above = full.energy[-1] - 4
     assert solver.refine(start, hopeless_above=4 + 1.02 * above).energy[-1] <= 4 + 1.02 * above
-    early = solver.refine(start, hopeless_above=4 + 0.3 * above)
+    early = solver.refine(start, hopeless_above=4 + 0.1 * above)
     assert len(early.energy) < len(full.energy) and not early.converged
+
+
+@pytest.mark.parametrize("turns", [1.5, 2.0, 3.0])
+def test_reachable_bounds_are_not_given_up_from_far_starts(turns: float) -> None:
+    """Tutte's embedding of a ramp: d is 30 to 60, and each step promises little of what is to come."""
+    V, F = shapes.helicoid(turns, int(80 * turns))
+    start = tutte_embedding(V, F)
+    start *= best_scale(V, F, start)
+    solver = IsometricSolver(V, F)
+    assert solver.refine(start).energy[0] > 20
+    for bound in (4.02, 4.05, 4.1, 4.2):
+        assert solver.refine(start, hopeless_above=bound).energy[-1] <= bound
 
 
 def test_flipped_start_is_refused() -> None:
