@@ -115,7 +115,7 @@ def measure(V: FloatArray, F: NDArray[np.int64], UV: FloatArray, *, topology: To
     """
     s = singular_values(V, F, UV)
     d = distortion_of(s)
-    area, real = _areas(V, F)
+    area, real = shaped_areas(V, F)
     d = np.where(real, d, 4.0)
     order = np.argsort(d)
     share = np.cumsum(area[order]) / area.sum()
@@ -137,13 +137,13 @@ def best_scale(V: FloatArray, F: NDArray[np.int64], UV: FloatArray) -> float:
     Scaling by t turns the mean into t^2 P + Q / t^2, least at t = (Q / P)^(1/4).
     """
     s = singular_values(V, F, UV)
-    area, real = _areas(V, F)
+    area, real = shaped_areas(V, F)
     good = real & (s[:, 1] > 0)
     square = s[good] ** 2
     return float((np.sum(area[good, None] / square) / np.sum(area[good, None] * square)) ** 0.25) if good.any() else 1.0
 
 
-def _areas(V: FloatArray, F: NDArray[np.int64]) -> tuple[FloatArray, NDArray[np.bool_]]:
+def shaped_areas(V: FloatArray, F: NDArray[np.int64]) -> tuple[FloatArray, NDArray[np.bool_]]:
     """Area of each triangle, mm^2, and whether it is wide enough to have a shape."""
     p = V[F]
     twice = np.linalg.norm(np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]), axis=1)

@@ -17,7 +17,7 @@ from scipy.sparse import csc_array
 from skinfab.errors import InputError
 from skinfab.flatten._barrier import barrier_assemble, barrier_energy, first_crossing
 from skinfab.flatten._dirichlet import assemble, energies, first_collapse
-from skinfab.flatten.distortion import local_triangles
+from skinfab.flatten.distortion import local_triangles, shaped_areas
 from skinfab.flatten.laplacian import mollified_lengths
 from skinfab.linalg import Cholesky
 from skinfab.tolerances import MOLLIFY, NEWTON_DECREASE, NEWTON_RIDGE
@@ -74,7 +74,7 @@ class IsometricSolver:
     ----------
     V : (n, 3) float64, mm
     F : (m, 3) int64
-        Needles and triangles without area are given the least width that can be computed with.
+        Triangles without area are given the least width that can be computed with.
 
     Examples
     --------
@@ -180,15 +180,17 @@ class IsometricSolver:
 
 
 def _rest_triangles(V: FloatArray, F: NDArray[np.int64]) -> FloatArray:
-    """Each triangle in its own plane, (m, 2, 2) mm, from edge lengths when some triangle is a needle."""
+    """Each triangle in its own plane, (m, 2, 2) mm; one without a shape gets the least that can be computed with."""
     rest = local_triangles(V, F)
-    opposite = mollified_lengths(V, F)
-    base = opposite[:, 2]
-    if np.array_equal(base, rest[:, 0, 0]):
+    shapeless = ~shaped_areas(V, F)[1]
+    if not shapeless.any():
         return rest
+    opposite = mollified_lengths(V, F)[shapeless]
+    base = opposite[:, 2]
     along = (base**2 + opposite[:, 1] ** 2 - opposite[:, 0] ** 2) / (2 * base)
     up = np.sqrt(np.maximum(opposite[:, 1] ** 2 - along**2, (MOLLIFY * base) ** 2))
-    return np.stack([np.stack([base, np.zeros_like(base)], axis=1), np.stack([along, up], axis=1)], axis=1)
+    rest[shapeless] = np.stack([np.stack([base, np.zeros_like(base)], axis=1), np.stack([along, up], axis=1)], axis=1)
+    return rest
 
 
 def _basis_gradients(rest: FloatArray, twice_area: FloatArray) -> FloatArray:
