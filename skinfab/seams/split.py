@@ -78,7 +78,6 @@ def split(mesh: Mesh, piece: OpenPiece, ends: tuple[int, int], weight: FloatArra
     data = np.r_[capacity, capacity, np.full(len(ka) + len(kb), endless)]
     network = coo_array((data, (rows, columns)), shape=(m + 2, m + 2)).tocsr()
     residual = network - maximum_flow(network, source, sink).flow
-    residual.data[residual.data < 0] = 0
     residual.eliminate_zeros()
     side = np.zeros(m + 2, dtype=bool)
     side[breadth_first_order(residual, source, return_predecessors=False)] = True
