@@ -7,6 +7,7 @@ from skinfab.mesh.model import Mesh
 from skinfab.seams.coarse import coarsen, transfer
 from skinfab.seams.creases import crease_seams
 from skinfab.seams.cut import open_pieces, seam_length
+from skinfab.seams.weights import dihedral_angles
 
 
 def test_coarse_meshes_keep_the_topology() -> None:
@@ -42,3 +43,12 @@ def test_onto_itself_nothing_moves_where_edges_are_shortest() -> None:
     mesh = Mesh(*shapes.grid(10, 10))
     cut = np.random.default_rng(0).random(len(mesh.topology.E)) < 0.1
     np.testing.assert_array_equal(transfer(mesh, cut, mesh), cut & ~mesh.topology.is_boundary)
+
+
+def test_seams_beside_creases_snap_to_them() -> None:
+    """A coarse edge across a cube's side becomes the cheaper way along its edges."""
+    small, fine = Mesh(*shapes.cube(1)), Mesh(*shapes.cube(4))
+    diagonal = np.flatnonzero(small.edge_lengths > 1.4)[:1]
+    moved = transfer(small, np.isin(np.arange(len(small.topology.E)), diagonal), fine)
+    np.testing.assert_allclose(dihedral_angles(fine)[moved], np.pi / 2)
+    assert fine.edge_lengths[moved].sum() == 2

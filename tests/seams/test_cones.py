@@ -50,6 +50,13 @@ def test_points_are_joined_at_little_cost() -> None:
     assert seam_length(mesh, cut_through(mesh, inner)) == pytest.approx(4 * 0.3)  # each to the border, three cells away
 
 
+def test_the_nearest_point_is_joined_first() -> None:
+    """The farther one then has the shorter way, to the nearer one's seam."""
+    mesh = Mesh(*shapes.grid(10, 10))
+    three_and_four_cells_from_the_border = np.array([61, 58])  # (6, 5) and (3, 5)
+    assert seam_length(mesh, cut_through(mesh, three_and_four_cells_from_the_border)) == pytest.approx(0.6)
+
+
 @pytest.mark.parametrize(
     ("mesh", "more", "says"),
     [

@@ -11,6 +11,7 @@ from skinfab.mesh.model import Mesh
 from skinfab.seams.cut import open_pieces
 from skinfab.seams.judge import Limits
 from skinfab.seams.manual import cut_along, read_cuts, seams_by_hand
+from skinfab.seams.weights import dihedral_angles
 
 
 def test_reads_paths_comments_and_commas(tmp_path) -> None:
@@ -91,6 +92,15 @@ def test_joins_far_vertices_by_the_shortest_way() -> None:
     x, y = mesh.V[mesh.topology.E[cut]].transpose(2, 0, 1)[:2]
     assert cut.sum() == 16 and (np.isclose(y, 0.5).all(axis=1) | np.isclose(x, 0.5).all(axis=1)).all()
     assert len(open_pieces(mesh, cut)) == 4
+
+
+def test_far_vertices_are_joined_along_creases() -> None:
+    """From corner to corner of a cube's side: along two edges, though the way across is shorter."""
+    mesh = Mesh(*shapes.cube(4))
+    corners = np.array([[0.0, 0, 0], [1, 1, 0]])
+    cut = cut_along(mesh, [corners])
+    assert mesh.edge_lengths[cut].sum() == pytest.approx(2)
+    np.testing.assert_allclose(dihedral_angles(mesh)[cut], np.pi / 2)
 
 
 def test_other_components_are_out_of_reach() -> None:
