@@ -1,0 +1,192 @@
+"""The main job on the seven objects, judged from what it wrote."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import ezdxf
+import numpy as np
+import pytest
+import results
+
+from gcode.marlin import emit
+from gcode.parse import parse
+from gcode.printer import load_printer
+from skinfab.cli.main import main
+
+ROOT = Path(__file__).parents[2]
+SKINFAB = Path(sys.executable).with_name("skinfab")
+
+#: Mean d in "Soft Sensing Skins for Arbitrary Objects", section III, by object.
+PUBLISHED = {
+    "cube": 4.0,
+    "dodecahedron": 4.0,
+    "cylinder": 4.0002,
+    "cup": 4.039,
+    "grip": 4.037,
+    "human_finger": 4.042,
+    "robot_finger": 4.005,
+}
+
+
+@pytest.fixture(scope="module", params=PUBLISHED)
+def made(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> tuple[str, Path, dict]:
+    name = request.param
+    folder = tmp_path_factory.mktemp(name) / "out"
+    assert main(["make", str(ROOT / f"meshes/{name}.obj"), "-o", str(folder)]) == 0
+    return name, folder, results.read_report(folder)
+
+
+def test_all_files_are_there(made: tuple[str, Path, dict]) -> None:
+    _, folder, report = made
+    names = {str(p.relative_to(folder)) for p in folder.rglob("*") if p.is_file()}
+    listed = {entry["file"] for part in ("gcode", "moulds") for entry in report[part]}
+    assert names == {*results.ALWAYS, *listed}
+    assert {Path(m["file"]).stem for m in report["moulds"]} == {p["id"] for p in report["pieces"]}
+    assert report["gcode"]
+
+
+def test_as_flat_as_published(made: tuple[str, Path, dict]) -> None:
+    name, folder, report = made
+    V, UV, F, FT = results.read_flat_obj(folder / "flat.obj")
+    assert len(F) == report["mesh"]["n_faces"]
+    mean, flipped = results.distortion(V, UV, F, FT)
+    assert mean <= PUBLISHED[name] + 1e-6
+    assert mean == pytest.approx(report["distortion"]["mean"], abs=1e-6)
+    assert flipped == 0 == sum(p["flipped"] for p in report["pieces"])
+    assert results.overlap(UV, FT) < 1e-6
+
+
+def test_every_piece_has_a_sensor_or_a_reason(made: tuple[str, Path, dict]) -> None:
+    _, _, report = made
+    with_sensor = {s["piece"] for s in report["sensors"]}
+    for piece in report["pieces"]:
+        assert piece["id"] in with_sensor or any(w.startswith(f"piece {piece['id']} has no sensor") for w in report["warnings"])
+
+
+def test_fingers_have_a_strain_sensor(made: tuple[str, Path, dict]) -> None:
+    name, _, report = made
+    assert ("strain-lines" in {s["kind"] for s in report["sensors"]}) == name.endswith("finger")
+
+
+def test_gcode_is_fit_to_print(made: tuple[str, Path, dict], capfd: pytest.CaptureFixture[str]) -> None:
+    _, folder, report = made
+    printer = load_printer()
+    for entry in report["gcode"]:
+        text = (folder / entry["file"]).read_text()
+        assert main(["gcode", "check", str(folder / entry["file"])]) == 0, capfd.readouterr()
+        arcs, faults = results.arc_faults(text)
+        assert faults == []
+        assert arcs == entry["arcs"] > 0
+        program = parse(text)
+        assert emit(program, printer) == text
+        assert parse(emit(program, printer)) == program
+
+
+def test_ink_adds_up(made: tuple[str, Path, dict]) -> None:
+    _, _, report = made
+    assert sum(s["ink_mm3"] for s in report["sensors"]) == pytest.approx(sum(g["ink_mm3"] for g in report["gcode"]), rel=1e-3)
+
+
+def test_moulds_hold_the_piece(made: tuple[str, Path, dict]) -> None:
+    _, folder, report = made
+    areas = {p["id"]: p["area_mm2"] for p in report["pieces"]}
+    for entry in report["moulds"]:
+        area = areas[Path(entry["file"]).stem]
+        assert entry["cavity_ml"] == pytest.approx(area * 2.5 / 1000, rel=0.005)
+        # Below the lip's shelf only the piece itself is open: the lower 2 of the 2.5 mm.
+        assert results.cavity_ml(folder / entry["file"], 1.6, 2.0) == pytest.approx(area * 2.0 / 1000, rel=0.005)
+
+
+def test_drawings_have_true_arcs(made: tuple[str, Path, dict]) -> None:
+    _, folder, report = made
+    in_svg, in_dxf = results.drawn_arcs(folder)
+    # A spiral has 2 n + 2 arcs, parallel lines one a turn.
+    drawn = sum(2 * s["params"]["n"] + 2 if "n" in s["params"] else s["params"]["lines"] - 1 for s in report["sensors"])
+    assert in_svg >= drawn and in_dxf >= drawn
+    assert not ezdxf.readfile(folder / "flat.dxf").audit().errors
+
+
+def test_times_and_memory_are_told(made: tuple[str, Path, dict]) -> None:
+    report = made[2]
+    assert set(report["timing_s"]) == {"load", "segment", "flatten", "place", "gcode", "mould", "total"}
+    assert report["timing_s"]["total"] >= sum(v for k, v in report["timing_s"].items() if k != "total") > 0
+    assert report["peak_rss_mb"] > 10
+
+
+def test_same_input_same_bytes(tmp_path: Path) -> None:
+    mesh = str(ROOT / "meshes/robot_finger.obj")
+    for name in "ab":
+        assert main(["make", mesh, "-o", str(tmp_path / name)]) == 0
+    for file in sorted(p.relative_to(tmp_path / "a") for p in (tmp_path / "a").rglob("*") if p.is_file()):
+        if file.name not in ("report.json", "report.html", "preview.png"):
+            assert (tmp_path / "a" / file).read_bytes() == (tmp_path / "b" / file).read_bytes(), file
+
+
+def test_the_document_makes_the_same_gcode_again(tmp_path: Path) -> None:
+    assert main(["make", str(ROOT / "meshes/cube.obj"), "-o", str(tmp_path / "out")]) == 0
+    assert main(["gcode", str(tmp_path / "out/skin.skin"), "-o", str(tmp_path / "again")]) == 0
+    for file in (tmp_path / "out/gcode").iterdir():
+        assert (tmp_path / "again" / file.name).read_bytes() == file.read_bytes()
+
+
+def test_json_is_the_report_and_nothing_else(tmp_path: Path) -> None:
+    done = subprocess.run(
+        [SKINFAB, "make", ROOT / "meshes/cube.obj", "-o", tmp_path / "out", "--json"], capture_output=True, text=True, timeout=120
+    )
+    assert done.returncode == 0
+    assert json.loads(done.stdout) == json.loads((tmp_path / "out/report.json").read_text())
+
+
+def test_sensors_from_a_file(tmp_path: Path) -> None:
+    (tmp_path / "one.toml").write_text(
+        '[[sensor]]\nkind = "contact-spiral"\nparams = { n = 3, x = 1.7, b = 1.5, l = 3, s = 15 }\npose = "auto"\n'
+    )
+    mesh = str(ROOT / "meshes/cube.obj")
+    assert main(["make", mesh, "-o", str(tmp_path / "out"), "--sensors", str(tmp_path / "one.toml")]) == 0
+    (sensor,) = results.read_report(tmp_path / "out")["sensors"]
+    assert sensor["params"]["s"] == 15 and sensor["resistance_kohm"]["median"] == pytest.approx(154.5, abs=1)
+
+
+def test_a_scaled_object_scales_its_skin(tmp_path: Path) -> None:
+    areas = []
+    for scale in ("1", "1.5"):
+        assert main(["make", str(ROOT / "meshes/cube.obj"), "-o", str(tmp_path / scale), "--scale", scale]) == 0
+        areas.append(sum(p["area_mm2"] for p in results.read_report(tmp_path / scale)["pieces"]))
+    assert areas[1] / areas[0] == pytest.approx(1.5**2, rel=1e-9)
+
+
+def test_a_printer_that_is_too_small_gets_smaller_pieces(tmp_path: Path) -> None:
+    # The cube's net is 170 mm long; this bed leaves 126 mm between the mould's rims.
+    text = (ROOT / "gcode/profiles/ender5plus-vipro.toml").read_text().replace("size = [350, 350]", "size = [150, 150]")
+    (tmp_path / "small.toml").write_text(text)
+    assert main(["make", str(ROOT / "meshes/cube.obj"), "-o", str(tmp_path / "out"), "--printer", str(tmp_path / "small.toml")]) == 0
+    report = results.read_report(tmp_path / "out")
+    assert len(report["pieces"]) > 1
+    V, UV, F, FT = results.read_flat_obj(tmp_path / "out/flat.obj")
+    assert results.distortion(V, UV, F, FT)[0] == pytest.approx(4.0, abs=1e-6)
+    for entry in report["gcode"]:
+        assert np.max(entry["bbox_mm"]) < 150
+
+
+@pytest.mark.parametrize(
+    ("arguments", "status", "says"),
+    [
+        (["nowhere.obj"], 1, "nowhere.obj"),
+        (["{cube}", "--max-distortion", "4"], 2, "above 4"),
+        (["{cube}", "--scale", "0"], 2, "positive"),
+        (["{cube}", "--printer", "nosuch"], 1, "nosuch"),
+        (["{cube}", "--sensors", "nosuch.toml"], 1, "nosuch.toml"),
+        (["{cube}", "--units", "furlong"], 2, "furlong"),
+    ],
+)
+def test_wrong_input_gets_one_line(arguments: list[str], status: int, says: str, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    words = [a.replace("{cube}", str(ROOT / "meshes/cube.obj")) for a in arguments]
+    try:
+        got = main(["make", *words, "-o", str(tmp_path / "out")])
+    except SystemExit as end:
+        got = end.code
+    error = capfd.readouterr().err
+    assert got == status and says in error.splitlines()[-1]
+    assert not (tmp_path / "out").exists()
