@@ -30,7 +30,7 @@ def cut_to_disk(topology: Topology, weight: FloatArray, n_vertices: int, *, star
         Cost of cutting each edge, > 0: length, cheaper on creases.
     n_vertices : int
     start : int, optional
-        For a closed piece: a vertex that the cut passes through. Default: the best of a few far ones.
+        For a closed piece: the vertex to grow the cut from; a sphere's slit begins there. Default: the best of a few far ones.
 
     Returns
     -------

@@ -85,7 +85,7 @@ def test_sphere_is_slit_from_pole_to_pole() -> None:
     assert 0.9 * np.pi < mesh.edge_lengths[cut].sum() < 1.15 * np.pi
 
 
-def test_passes_where_it_is_told() -> None:
+def test_grows_from_where_it_is_told() -> None:
     mesh = Mesh(*shapes.torus())
     for start in (0, 100, 333):
         cut = cut_to_disk(mesh.topology, mesh.edge_lengths, len(mesh.V), start=start)
