@@ -147,13 +147,14 @@ def _lip_region(piece: Piece, cavity: MultiPolygon, lips: Sequence[NDArray[np.fl
         # The outline is counter-clockwise: the outside is on the right, which shapely calls negative.
         strip: BaseGeometry = run.buffer(-mould.lip, single_sided=True, join_style="mitre", mitre_limit=2)
         others = boundary - run.buffer(MOULD_SLIT_MM)
-        strip = strip - cavity - shapely.union_all([others, *strips]).buffer(mould.wall)
+        # On one grid GEOS cannot lose its way: in floating point a thousand-edged outline made it give up.
+        strip = _on_grid(_on_grid(strip) - cavity - shapely.union_all([others, *strips]).buffer(mould.wall))
         # What is left between two darts may be a splinter that tears off with the skin: it goes. The chinks
         # that this leaves towards the cavity would be films of plastic: they are filled again.
         half = mould.wall / 2
         broad = strip.buffer(-half, join_style="mitre").buffer(half, join_style="mitre")
         joined = (broad | cavity).buffer(half, join_style="mitre").buffer(-half, join_style="mitre")
-        parts = _on_grid((broad | (joined - cavity)) & strip).geoms
+        parts = _on_grid(shapely.intersection(_on_grid(broad | (joined - cavity)), strip, grid_size=MOULD_GRID_MM)).geoms
         strips.append(MultiPolygon([part for part in parts if (part & broad).area > half**2 and part.distance(cavity) < MOULD_SLIT_MM]))
     return _on_grid(shapely.union_all(strips) - cavity)
 
