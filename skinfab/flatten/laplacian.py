@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array, csc_array
 
+from skinfab.flatten.distortion import shaped_areas
 from skinfab.tolerances import MOLLIFY
 
 FloatArray = NDArray[np.float64]
@@ -39,9 +40,9 @@ class Intrinsic:
 def intrinsic(V: FloatArray, F: NDArray[np.int64]) -> Intrinsic:
     """Angles and cotangents of a mesh.
 
-    A triangle flatter than a needle has no cotangents. Every edge is lengthened by the least amount that
-    keeps each triangle inequality by a margin (Sharp and Crane 2020, "A Laplacian for Nonmanifold Triangle
-    Meshes", section 4.5); on a sound mesh that amount is zero.
+    A triangle without area has no cotangents: its edges are lengthened by the least amount that keeps every
+    triangle inequality by a margin (Sharp and Crane 2020, "A Laplacian for Nonmanifold Triangle Meshes",
+    section 4.5). Triangles that have a shape, needles too, keep it.
 
     Parameters
     ----------
@@ -54,14 +55,24 @@ def intrinsic(V: FloatArray, F: NDArray[np.int64]) -> Intrinsic:
     >>> np.degrees(t.angle).round(6).tolist()
     [[90.0, 45.0, 45.0]]
     """
-    length = mollified_lengths(V, F)
+    p = V[F]
+    ahead, behind = np.roll(p, -1, axis=1) - p, np.roll(p, 1, axis=1) - p
+    dot = np.einsum("mki,mki->mk", ahead, behind)
+    area, shaped = shaped_areas(V, F)
+    twice_area = 2 * area
+    if not shaped.all():
+        dot[~shaped], twice_area[~shaped] = _from_lengths(mollified_lengths(V, F)[~shaped])
+    return Intrinsic(F, len(V), np.arctan2(twice_area[:, None], dot), dot / twice_area[:, None])
+
+
+def _from_lengths(length: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Dot products at the corners (m, 3) and twice the areas (m,) of triangles given by their edge lengths, mm^2."""
     a, b, c = length.T
     # Kahan's stable form of Heron's rule keeps its digits on needles.
     high, mid, low = np.sort(length, axis=1)[:, ::-1].T
-    twice_area = np.sqrt(np.maximum((high + (mid + low)) * (low - (high - mid)) * (low + (high - mid)) * (high + (mid - low)), 0)) / 2
-
+    product = (high + (mid + low)) * (low - (high - mid)) * (low + (high - mid)) * (high + (mid - low))
     dot = np.stack([b**2 + c**2 - a**2, c**2 + a**2 - b**2, a**2 + b**2 - c**2], axis=1) / 2
-    return Intrinsic(F, len(V), np.arctan2(twice_area[:, None], dot), dot / twice_area[:, None])
+    return dot, np.sqrt(np.maximum(product, 0)) / 2
 
 
 def mollified_lengths(V: FloatArray, F: NDArray[np.int64]) -> FloatArray:

@@ -8,7 +8,7 @@ import shapes
 from skinfab.errors import InputError
 from skinfab.flatten.bff import flatten_disk
 from skinfab.flatten.disk import flatten_isometric
-from skinfab.flatten.distortion import best_scale, measure, singular_values
+from skinfab.flatten.distortion import best_scale, measure, shaped_areas, singular_values
 from skinfab.flatten.isometric import IsometricSolver
 from skinfab.flatten.laplacian import intrinsic
 from skinfab.flatten.tutte import tutte_embedding
@@ -58,14 +58,23 @@ def test_libigl_says_nothing_of_them() -> None:
     assert not np.isfinite(plain).all() or (measure(V, F, plain).mean > 100)
 
 
-@pytest.mark.parametrize("stretch", [1e3, 1e4])
+def areas_from_lengths(V: np.ndarray, F: np.ndarray) -> np.ndarray:
+    """Heron's rule as it stands in the books."""
+    a, b, c = (np.linalg.norm(V[F[:, (k + 1) % 3]] - V[F[:, k]], axis=1) for k in range(3))
+    s = (a + b + c) / 2
+    return np.sqrt(np.maximum(s * (s - a) * (s - b) * (s - c), 0))
+
+
+@pytest.mark.parametrize("stretch", [1e5, 1e6])
 def test_flat_slivers(stretch: float) -> None:
-    """A flat sheet stretched until its lengths, made safe, no longer tell its shape: BFF alone bends it."""
+    """A flat sheet stretched until its edge lengths no longer tell its triangles' areas; their corners still do."""
     V, F = shapes.random_disk(4, 200, 0)
     V = V * [stretch, 1, 0] @ shapes.rotation(1).T
-    assert measure(V, F, flatten_disk(V, F)).max > 10
-    result = measure(V, F, flatten_isometric(V, F))
-    assert result.flipped == 0 and result.max == pytest.approx(4, abs=1e-6)
+    area, _ = shaped_areas(V, F)
+    assert np.abs(areas_from_lengths(V, F) / area - 1).max() > 1e-3
+    for method in (flatten_disk, flatten_isometric):
+        result = measure(V, F, method(V, F))
+        assert result.flipped == 0 and result.max == pytest.approx(4, abs=1e-4)
 
 
 @pytest.mark.parametrize("height", [1e-3, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-11])
@@ -74,9 +83,6 @@ def test_needles(height: float) -> None:
     V, F = shapes.wavy()
     middle = (V[61] + V[74]) / 2
     V[60] = middle + (V[60] - middle) / np.linalg.norm(V[60] - middle) * height * np.linalg.norm(V[61] - V[74])
-    if 1e-10 < height < 1e-5:
-        bff = flatten_disk(V, F)
-        assert measure(V, F, bff * best_scale(V, F, bff)).max > 500
     result = measure(V, F, flatten_isometric(V, F))
     assert result.flipped == 0 and result.mean < 4.0003 and result.max < 20
 
