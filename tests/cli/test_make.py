@@ -183,10 +183,7 @@ def test_a_printer_that_is_too_small_gets_smaller_pieces(tmp_path: Path) -> None
 )
 def test_wrong_input_gets_one_line(arguments: list[str], status: int, says: str, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     words = [a.replace("{cube}", str(ROOT / "meshes/cube.obj")) for a in arguments]
-    try:
-        got = main(["make", *words, "-o", str(tmp_path / "out")])
-    except SystemExit as end:
-        got = end.code
+    assert main(["make", *words, "-o", str(tmp_path / "out")]) == status
     error = capfd.readouterr().err
-    assert got == status and says in error.splitlines()[-1]
+    assert says in error.splitlines()[-1]
     assert not (tmp_path / "out").exists()

@@ -1,0 +1,96 @@
+"""`skinfab flatten`: every method, on what it can flatten, and a sentence where it cannot."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+import results
+import shapes
+
+from skinfab.cli.flatten import NAMES
+from skinfab.cli.main import main
+from skinfab.flatten.methods import METHODS
+
+ROOT = Path(__file__).parents[2]
+CUBE = str(ROOT / "meshes/cube.obj")
+
+
+def written(folder: Path, V: np.ndarray, F: np.ndarray) -> str:
+    path = folder / "mesh.obj"
+    lines = ["v {:.17g} {:.17g} {:.17g}".format(*v) for v in V.tolist()] + ["f {} {} {}".format(*f) for f in (F + 1).tolist()]
+    path.write_text("\n".join(lines) + "\n")
+    return str(path)
+
+
+def test_the_names_are_those_of_the_table() -> None:
+    assert set(NAMES) == {"auto", "bff-cones", *METHODS}
+
+
+@pytest.mark.parametrize("method", ["auto", *METHODS])
+def test_each_method_on_a_disk(method: str, tmp_path: Path) -> None:
+    V, F = shapes.cap(8, 0.8)
+    mesh = written(tmp_path, V * 30, F)
+    assert main(["flatten", mesh, "-o", str(tmp_path / "flat.obj"), "--method", method, "--json", str(tmp_path / "flat.json")]) == 0
+    figures = json.loads((tmp_path / "flat.json").read_text())
+    mean, flipped = results.distortion(*results.read_flat_obj(tmp_path / "flat.obj"))
+    assert mean == pytest.approx(figures["distortion"]["mean"], abs=1e-6) and flipped == 0
+    assert figures["distortion"]["mean_at_kept_area"] >= figures["distortion"]["mean"] - 1e-6
+    best = 4.02 if method in ("auto", "isometric", "slim", "arap") else 4.6
+    assert mean < best
+
+
+@pytest.mark.parametrize(("cones", "mean"), [("8", 4.0), ("auto", 4.0), ("0,1,2,3,4,5,6,7", 4.0)])
+def test_cones(cones: str, mean: float, tmp_path: Path) -> None:
+    assert main(["flatten", CUBE, "-o", str(tmp_path / "o.obj"), "--method", "bff-cones", "--cones", cones]) == 0
+    assert results.distortion(*results.read_flat_obj(tmp_path / "o.obj"))[0] == pytest.approx(mean, abs=1e-6)
+
+
+def test_auto_cuts_what_is_closed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["flatten", CUBE, "-o", str(tmp_path / "o.obj")]) == 0
+    assert "cut automatically" in capsys.readouterr().err
+    V, UV, F, FT = results.read_flat_obj(tmp_path / "o.obj")
+    assert results.distortion(V, UV, F, FT)[0] == pytest.approx(4) and results.overlap(UV, FT) < 1e-6
+
+
+def test_auto_leaves_a_disk_whole_and_says_when_it_is_bent_too_far(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    V, F = shapes.cap(8, 2.0)
+    assert main(["flatten", written(tmp_path, V * 30, F), "-o", str(tmp_path / "o.obj")]) == 0
+    captured = capsys.readouterr()
+    assert "1 pieces" in captured.out and "more than a skin stands" in captured.err
+
+
+@pytest.mark.parametrize(
+    ("words", "status", "says"),
+    [
+        (["--method", "bff"], 1, "only a disk can be flattened"),
+        (["--method", "slim"], 1, "only a disk can be flattened"),
+        (["--method", "bff-cones", "--cones", "99,"], 1, "cone vertex 99 does not exist"),
+        (["--method", "bff-cones", "--cones", "0,"], 1, "at least two cones"),
+        (["--method", "bff-cones", "--cones", "none"], 2, "neither auto, nor a number"),
+        (["--cones", "8"], 2, "goes with --method bff-cones"),
+        (["--method", "magic"], 2, "magic"),
+    ],
+)
+def test_what_cannot_be_done(words: list[str], status: int, says: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["flatten", CUBE, "-o", str(tmp_path / "o.obj"), *words]) == status
+    assert says in capsys.readouterr().err.splitlines()[-1]
+    assert not (tmp_path / "o.obj").exists()
+
+
+def test_flips_and_overlap_are_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    V, F = shapes.random_disk(5, 100, 1.0)
+    mesh = written(tmp_path, V * 30, F)
+    assert main(["flatten", mesh, "-o", str(tmp_path / "o.obj"), "--method", "bff"]) == 3
+    assert "turned" in capsys.readouterr().err
+    assert not (tmp_path / "o.obj").exists()
+
+
+@pytest.mark.parametrize("scale", ["1e-6", "1e6"])
+def test_units_do_not_matter(scale: str, tmp_path: Path) -> None:
+    V, F = shapes.cap(6, 0.8)
+    mesh = written(tmp_path, V * 30, F)
+    assert main(["flatten", mesh, "-o", str(tmp_path / "o.obj"), "--units", "mm"]) == 0
+    assert main(["flatten", mesh, "-o", str(tmp_path / "s.obj"), "--units", "mm", "--scale", scale]) == 0
+    plain, scaled = (results.distortion(*results.read_flat_obj(tmp_path / name))[0] for name in ("o.obj", "s.obj"))
+    assert scaled == pytest.approx(plain, abs=1e-5)

@@ -1,0 +1,125 @@
+"""The main job on broken files, interrupted, and on a full disk: one answer, nothing half-written."""
+
+import os
+import resource
+import runpy
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+import results
+
+from skinfab.cli.main import main
+
+ROOT = Path(__file__).parents[2]
+SKINFAB = Path(sys.executable).with_name("skinfab")
+CASES = runpy.run_path(str(Path(__file__).with_name("broken_meshes.py")))["all_cases"]()
+HANG_S = 10
+
+
+def left_in(folder: Path) -> list[str]:
+    return sorted(str(p.relative_to(folder)) for p in folder.rglob("*")) if folder.exists() else []
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: case.file)
+def test_broken_meshes(case, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / case.file).write_bytes(case.data)
+    # Time of this process, not of the wall: other tests run beside it.
+    began = time.process_time()
+    status = main(["make", str(tmp_path / case.file), "-o", str(tmp_path / "out")])
+    assert time.process_time() - began < HANG_S
+    error = capfd.readouterr().err
+    assert "Traceback" not in error and "fault of skinfab" not in error and "nan" not in error.lower().split()
+    if status == 0:
+        report = results.read_report(tmp_path / "out")
+        assert report["distortion"]["mean"] <= 4.05
+        for file in (tmp_path / "out").rglob("*"):
+            if file.suffix in (".obj", ".svg", ".gcode", ".json"):
+                assert not any(word in file.read_text().lower() for word in (" nan", "nan ", "inf ", "infinity"))
+    else:
+        assert status in (1, 3)
+        faults = [line for line in error.splitlines() if not line.startswith("note: ")]
+        assert len(faults) == 1 and faults[0].startswith("skinfab: ") and len(faults[0]) < 400
+        assert not (tmp_path / "out").exists()
+    if case.fate in ("refused", "repaired"):
+        assert status == 1
+
+
+@pytest.mark.parametrize("after_s", [0.2, 1.0, 2.0, 3.0, 4.0])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_interrupted(after_s: float, number: int, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    job = subprocess.Popen(
+        [SKINFAB, "make", ROOT / "meshes/cup.obj", "-o", out], stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True
+    )
+    time.sleep(after_s)
+    job.send_signal(number)
+    _, error = job.communicate(timeout=30)
+    if job.returncode == 0:
+        # It was through already: then everything is there.
+        results.read_report(out)
+        return
+    # Before Python has set its handlers the system ends the process itself.
+    assert job.returncode in (130, -number)
+    assert "Traceback" not in error
+    assert left_in(out) == []
+
+
+@pytest.mark.parametrize("most_bytes", [0, 1_000, 30_000, 300_000])
+def test_no_room_for_a_file(most_bytes: int, tmp_path: Path) -> None:
+    """The kernel refuses to let any file grow past a limit, as it does on a full disk."""
+
+    def limit() -> None:
+        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (most_bytes, most_bytes))
+
+    done = subprocess.run(
+        [SKINFAB, "make", ROOT / "meshes/cube.obj", "-o", tmp_path / "out"],
+        capture_output=True,
+        text=True,
+        timeout=120,
+        preexec_fn=limit,
+        env={**os.environ, "NUMBA_CACHE_DIR": "", "MPLCONFIGDIR": str(tmp_path / "mpl")},
+    )
+    assert done.returncode == 1
+    assert done.stderr.splitlines()[-1].startswith("skinfab: cannot write")
+    assert left_in(tmp_path / "out") == []
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="only root can mount a small file system")
+def test_full_disk(tmp_path: Path) -> None:
+    disk = tmp_path / "disk"
+    disk.mkdir()
+    mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=200k", "tmpfs", disk], capture_output=True, text=True)
+    if mounted.returncode:
+        pytest.skip(f"no small file system can be mounted here: {mounted.stderr.strip()}")
+    try:
+        done = subprocess.run(
+            [SKINFAB, "make", ROOT / "meshes/robot_finger.obj", "-o", disk / "out"], capture_output=True, text=True, timeout=120
+        )
+        assert done.returncode == 1
+        assert done.stderr.splitlines()[-1].startswith("skinfab: cannot write") and "disk is full" in done.stderr
+        assert left_in(disk) == []
+    finally:
+        subprocess.run(["umount", disk], check=True)
+
+
+def test_an_earlier_result_survives_a_failed_run(tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    assert main(["make", str(ROOT / "meshes/cube.obj"), "-o", str(out)]) == 0
+    before = {p: p.read_bytes() for p in out.rglob("*") if p.is_file()}
+    (tmp_path / "bad.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n")
+    assert main(["make", str(tmp_path / "bad.obj"), "-o", str(out)]) == 1
+    assert {p: p.read_bytes() for p in out.rglob("*") if p.is_file()} == before
+
+
+def test_a_second_run_leaves_no_stale_piece(tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    assert main(["make", str(ROOT / "meshes/cylinder.obj"), "-o", str(out)]) == 0
+    (out / "gcode/mine.gcode").write_text("; my own\n")
+    assert main(["make", str(ROOT / "meshes/cube.obj"), "-o", str(out)]) == 0
+    listed = {entry["file"] for part in ("gcode", "moulds") for entry in results.read_report(out)[part]}
+    assert {str(p.relative_to(out)) for f in ("gcode", "mould") for p in (out / f).iterdir()} == listed | {"gcode/mine.gcode"}
