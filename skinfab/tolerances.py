@@ -84,3 +84,12 @@ APART_REACH = 0.03
 
 #: Weight of that push beside the mean d: only its reach matters, it grows without bound towards contact.
 APART_WEIGHT = 1e-5
+
+#: A piece with d above this anywhere is warned of: one direction is off by a factor of nearly three (2.8^2 + 2.8^-2 + 2).
+CAUTION_D_MAX = 10.0
+
+#: So is one whose 99 % quantile of d is above this: a hundredth of it is off by 1.4 or more (1.4^2 + 1.4^-2 + 2 = 4.47).
+CAUTION_D_P99 = 4.5
+
+#: A sensor with more wrap strain than this anywhere is warned of: its resistance there is off by a fifth.
+CAUTION_WRAP_STRAIN = 0.10

@@ -5,11 +5,12 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 from importlib import resources
-from pathlib import Path
+from pathlib import Path, PureWindowsPath
 from typing import Any
 
 import numpy as np
 
+from skinfab import __version__
 from skinfab.electrical import ink_volume, resistance
 from skinfab.errors import RefusedError
 from skinfab.files import atomic_write
@@ -20,6 +21,7 @@ from skinfab.pieces import Piece
 from skinfab.placement.locate import Locator
 from skinfab.placement.sensor import Sensor
 from skinfab.placement.wrap_strain import wrap_strain
+from skinfab.report.cautions import cautions
 from skinfab.skin import Skin
 
 #: Version of the report's shape.
@@ -50,14 +52,16 @@ def build_report(
     material : Material
         What the sensors' ink and resistance are computed with.
     gcode : sequence of mappings
-        file, lines, time_s, ink_mm3, bbox_mm ((2, 2) or (2, 3)), arcs.
+        file, lines, time_s, ink_mm3, bbox_mm ((2, 2) or (2, 3)), arcs; and, where it is known, primed_mm3:
+        the most ink that is in the nozzle beside what is laid.
     moulds : sequence of mappings
-        file, watertight, cavity_ml.
+        file, watertight, cavity_ml; and, where it is known, size_mm: the outer size in x, y, z.
     recipe : mapping, optional
     timing_s : mapping
         Seconds of each phase, and "total".
     peak_rss_mb : float
     warnings : sequence of str
+        What was said on the way; what the figures themselves warn of is added here (`skinfab.report.cautions`).
 
     Returns
     -------
@@ -69,8 +73,9 @@ def build_report(
     RefusedError
         A value is not finite, so the result behind it cannot be right.
     """
-    report = {
+    report: dict[str, Any] = {
         "schema": SCHEMA,
+        "made_for": _made_for(skin, material),
         "mesh": _mesh(skin),
         "pieces": [_piece(piece, d) for piece, d in zip(skin.pieces, distortions, strict=True)],
         "distortion": _overall(skin, distortions),
@@ -85,6 +90,7 @@ def build_report(
     }
     if bad := _not_finite(report, ""):
         raise RefusedError(f"report: {bad} is not finite; the result was not written")
+    report["warnings"] += cautions(skin, distortions, report["sensors"])
     return report
 
 
@@ -106,6 +112,28 @@ def report_schema() -> dict[str, Any]:
     return schema
 
 
+def _made_for(skin: Skin, material: Material) -> dict[str, Any]:
+    """What must be the same for the result to be the same, and to be of use at the printer."""
+    return {
+        "software": f"skinfab {__version__}",
+        "printer": _profile(skin.printer),
+        "material": _profile(skin.material),
+        "material_name": material.name,
+        "ink": material.ink.name,
+        "bead_width_mm": material.ink.bead_width,
+        "bead_area_mm2": material.ink.bead_area_mm2,
+        "skin_thickness_mm": material.depth,
+        "max_distortion": skin.max_distortion,
+        "seed": skin.seed,
+        "scale": skin.source.scale,
+    }
+
+
+def _profile(name: str) -> str:
+    """A bundled profile's name, or the name of a file of one's own: its folder means nothing on another machine."""
+    return PureWindowsPath(name).name if name.endswith(".toml") else name
+
+
 def _mesh(skin: Skin) -> dict[str, Any]:
     source = skin.source
     return {
@@ -122,6 +150,7 @@ def _piece(piece: Piece, d: Distortion) -> dict[str, Any]:
     outline = piece.outline
     return {
         "id": piece.id,
+        "size_mm": list(piece.size),
         "n_faces": len(piece.F),
         "area_mm2": piece.area,
         "distortion": {"mean": d.mean, "p95": d.p95, "p99": d.p99, "max": d.max},
@@ -164,6 +193,7 @@ def _sensor(skin: Skin, sensor: Sensor, material: Material, locator: Locator) ->
         "resistance_kohm": {"low": r.low, "median": r.median, "high": r.high},
         "wrap_strain": {"mean": strain.mean, "max": strain.max},
         "channel": sensor.channel,
+        "terminals_mm": [sensor.path.start.tolist(), sensor.path.end.tolist()],
     }
 
 

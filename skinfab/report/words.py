@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sized
+from collections.abc import Sequence, Sized
 
 
 def count(things: Sized, what: str) -> str:
@@ -25,3 +25,14 @@ def percent(fraction: float) -> float:
     (12.35, '0.0')
     """
     return round(100 * fraction, 2) + 0.0
+
+
+def listed(names: Sequence[str], what: str) -> str:
+    """Things by their names.
+
+    Examples
+    --------
+    >>> listed(["P3"], "piece"), listed(["P3", "P4", "P5"], "piece")
+    ('piece P3', 'pieces P3, P4, P5')
+    """
+    return f"{what}{'s' * (len(names) != 1)} {', '.join(names)}"

@@ -11,6 +11,7 @@ import jsonschema
 import numpy as np
 import pytest
 
+import skinfab
 from skinfab.errors import RefusedError
 from skinfab.flatten.distortion import Distortion
 from skinfab.material import load_material
@@ -63,6 +64,35 @@ def test_figures_in_closed_form(skin: Skin, distortions: list[Distortion]) -> No
     assert strain["params"]["l1"] == 60 and (strain["channel"], contact["channel"]) == (0, 1)
 
 
+def test_it_says_what_it_was_made_for(skin: Skin, distortions: list[Distortion]) -> None:
+    skin = dataclasses.replace(skin, printer="/home/me/labs/our-printer.toml", max_distortion=4.07, seed=3)
+    report = report_of(skin, distortions, gcode=[{**GCODE, "primed_mm3": 0.2}], moulds=[{**MOULD, "size_mm": (260.0, 70.0, 4.1)}])
+    validate(report)
+    assert report["made_for"] == {
+        "software": f"skinfab {skinfab.__version__}",
+        "printer": "our-printer.toml",  # not the folder: the report goes to others
+        "material": "carbon-grease-ecoflex",
+        "material_name": "carbon grease 846-1P in Ecoflex 00-30",
+        "ink": "MG Chemicals 846-1P carbon grease",
+        "bead_width_mm": 0.785,
+        "bead_area_mm2": 0.484,
+        "skin_thickness_mm": 2.5,
+        "max_distortion": 4.07,
+        "seed": 3,
+        "scale": 1.0,
+    }
+    assert report["pieces"][0]["size_mm"] == [240.0, 50.0]
+    # The leads of S1 begin at its place and b = 6 mm above it.
+    np.testing.assert_allclose(report["sensors"][0]["terminals_mm"], [[90, 20], [90, 26]], atol=1e-9)
+
+
+def test_bad_figures_are_warned_of_after_what_was_said_before(skin: Skin, distortions: list[Distortion]) -> None:
+    d = np.full(len(skin.mesh.F), 4.0)
+    d[3] = 12.0
+    said, added = report_of(skin, [dataclasses.replace(distortions[0], d=d, max=12.0)])["warnings"]
+    assert said == "mind the gap" and added.startswith("piece P1: ") and "12.0" in added
+
+
 def test_overall_distortion_is_weighted_by_area_on_the_object(skin: Skin, distortions: list[Distortion]) -> None:
     d = np.full(len(skin.mesh.F), 4.0)
     d[0] = 9.0
@@ -106,6 +136,8 @@ def test_a_distortion_for_each_piece(skin: Skin, distortions: list[Distortion]) 
         lambda r: r.update(extra=1),
         lambda r: r.pop("seam_mm"),
         lambda r: r.update(schema=2),
+        lambda r: r["made_for"].pop("ink"),
+        lambda r: r["moulds"][0].update(size_mm=[1.0, 2.0]),
         lambda r: r["mesh"].update(units="ft"),
         lambda r: r["mesh"].update(sha256="short"),
         lambda r: r["pieces"][0]["distortion"].update(mean=3.9),
