@@ -46,7 +46,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "distortion d, and first cuts what is not a disk; bff-cones cuts through cone points; the others need a disk.",
     )
     steps.add_mesh_options(p)
-    p.add_argument("-o", "--output", metavar="OUT.obj", type=Path, required=True, help="the file to write")
+    p.add_argument("-o", "--output", metavar="OUT.obj", type=steps.named(".obj"), required=True, help="the file to write")
     p.add_argument("--method", choices=NAMES, default="auto", help="default: auto")
     p.add_argument("--cones", type=cones, metavar="N|auto|LIST", help="for bff-cones: how many cones, auto, or vertices such as 0,5,17")
     p.add_argument(
@@ -76,7 +76,7 @@ def run(args: argparse.Namespace) -> int:
     for line in steps.piece_lines(pieces, distortions):
         print(line)
     mean, most = figures["distortion"]["mean"], figures["distortion"]["max"]
-    print(f"{args.output}: {len(pieces)} pieces by {args.method} in {seconds:.2f} s, d mean {mean:.4f}, max {most:.3f}")
+    print(f"{args.output}: {steps.counted(len(pieces), 'piece')} by {args.method} in {seconds:.2f} s, d mean {mean:.4f}, max {most:.3f}")
     if mean > args.max_distortion:
         steps.say(
             [f"mean d {mean:.3f} is more than a skin stands ({args.max_distortion:g}); skinfab segment finds darts that bring it down"]

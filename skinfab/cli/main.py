@@ -12,7 +12,7 @@ import signal
 import sys
 import traceback
 import warnings
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from types import FrameType
 from typing import Any
@@ -71,6 +71,7 @@ def build_parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
     for name, summary in COMMANDS.items():
         if name == wanted:
             importlib.import_module(f"skinfab.cli.{name}").add_parser(subparsers)
+            subparsers.choices[name].set_defaults(parser=subparsers.choices[name])
         else:
             subparsers.add_parser(name, help=summary)
     return parser
@@ -84,8 +85,23 @@ class _Parser(argparse.ArgumentParser):
 
 
 def _dispatch(arguments: list[str]) -> int:
-    args = build_parser(arguments).parse_args(arguments)
+    parser = build_parser(arguments)
+    wanted = next((a for a in arguments if not a.startswith("-")), None)
+    if wanted is not None and wanted not in COMMANDS:
+        parser.error(f"there is no command {wanted!r}{_suggest(wanted, COMMANDS)}; skinfab --help lists them")
+    args, unknown = parser.parse_known_args(arguments)
+    if unknown:
+        # Told by the sub-command's own parser: its usage line is the one that helps.
+        options = [option for action in args.parser._actions for option in action.option_strings]
+        args.parser.error(f"{unknown[0]!r} is not known here{_suggest(unknown[0].split('=')[0], options)}")
     return int(args.run(args))
+
+
+def _suggest(word: str, known: Iterable[str]) -> str:
+    import difflib
+
+    near = difflib.get_close_matches(word, known, n=1)
+    return f" (did you mean {near[0]}?)" if near else ""
 
 
 def _guarded(work: Callable[[], int]) -> int:

@@ -7,7 +7,7 @@ import json
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from skinfab.cli import steps
 
@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from skinfab.mould import CastingMould
     from skinfab.progress import Progress, Stopwatch
     from skinfab.skin import Skin
+
+Started: TypeAlias = "tuple[Skin, list[Distortion], steps.Profiles, tuple[str, ...]]"
 
 #: Warnings shown on the terminal; the report has all.
 _SHOWN = 8
@@ -28,14 +30,15 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "make",
         help="mesh in, everything out: seams, flat pieces, sensors, G-code, moulds, report",
         description="From a mesh to a skin ready to be cast and printed. DIR gets skin.skin, report.json, report.html, preview.png, "
-        "flat.svg, flat.dxf, flat.obj, gcode/PIECE.gcode and mould/PIECE.stl.",
+        "flat.svg, flat.dxf, flat.obj, gcode/PIECE.gcode and mould/PIECE.stl. In place of a mesh, a skin document may be given: its "
+        "seams, and its sensors where it has any, are taken as they are.",
     )
     steps.add_mesh_options(p)
     p.add_argument("-o", "--output", metavar="DIR", type=Path, required=True, help="folder for the results, made if missing")
     p.add_argument("--sensors", metavar="FILE.toml", type=Path, help="which sensors, and where (see docs/sensors.md; default: automatic)")
     steps.add_cut_options(p)
     p.add_argument("--json", action="store_true", help="print the report as one JSON object and nothing else")
-    p.set_defaults(run=run)
+    p.set_defaults(run=run, wrong_usage=p.error)
 
 
 def run(args: argparse.Namespace) -> int:
@@ -43,6 +46,7 @@ def run(args: argparse.Namespace) -> int:
     from skinfab.progress import Stopwatch, terminal_progress
     from skinfab.staging import staged_folder
 
+    steps.require_fitting_options(args)
     watch = Stopwatch()
     with staged_folder(args.output) as folder, terminal_progress(quiet=args.json) as progress:
         report, said = _make(args, folder, watch, progress)
@@ -55,8 +59,9 @@ def run(args: argparse.Namespace) -> int:
     if len(warnings) > _SHOWN:
         steps.say([f"{len(warnings) - _SHOWN} more warnings are in {args.output / 'report.html'}"], kind="warning")
     d, ink = report["distortion"], sum(g["ink_mm3"] for g in report["gcode"])
+    pieces, sensors = steps.counted(len(report["pieces"]), "piece"), steps.counted(len(report["sensors"]), "sensor")
     print(
-        f"{args.output}: {len(report['pieces'])} pieces, d mean {d['mean']:.4f}; {len(report['sensors'])} sensors, {ink:.0f} mm^3 of ink, "
+        f"{args.output}: {pieces}, d mean {d['mean']:.4f}; {sensors}, {ink:.0f} mm^3 of ink, "
         f"printed in {sum(g['time_s'] for g in report['gcode']) / 60:.0f} min; made in {report['timing_s']['total']:.1f} s"
     )
     print(f"open {args.output / 'report.html'}")
@@ -68,23 +73,18 @@ def _make(args: argparse.Namespace, folder: Path, watch: Stopwatch, progress: Pr
     from gcode.write import write_skin
     from skinfab.document import save_skin
     from skinfab.mould import can_be_cast
-    from skinfab.progress import part_of, peak_rss_mb
+    from skinfab.progress import peak_rss_mb
     from skinfab.recipe import recipe
     from skinfab.report.build import build_report, write_report
 
-    used = steps.profiles(args.printer)
-    progress(0.0, "reading")
-    with watch.phase("load"):
-        loaded = steps.load(args)
-    with watch.phase("segment"):
-        within = steps.limits(args.max_distortion, used)
-        seams = steps.cut(loaded, within, neck=used.material.neck, progress=part_of(progress, 0.05, 0.6))
-    with watch.phase("flatten"):
-        skin, distortions = steps.to_skin(loaded, seams, used=used, max_distortion=args.max_distortion, seed=args.seed)
+    start = _document if args.mesh.suffix.lower() == ".skin" else _cut_mesh
+    skin, distortions, used, notes = start(args, watch, progress)
     progress(0.6, "placing sensors")
+    warnings: list[str] = []
     with watch.phase("place"):
-        sensors, warnings = steps.place_sensors(skin, used.material, args.sensors)
-        skin = replace(skin, sensors=sensors)
+        if args.sensors is not None or not skin.sensors:
+            sensors, warnings = steps.place_sensors(skin, used.material, args.sensors)
+            skin = replace(skin, sensors=sensors)
     progress(0.75, "writing G-code")
     with watch.phase("gcode"):
         printed = write_skin(skin, folder / "gcode", printer=used.printer) if skin.sensors else ()
@@ -109,13 +109,44 @@ def _make(args: argparse.Namespace, folder: Path, watch: Stopwatch, progress: Pr
         recipe=recipe({m.piece: m.cavity_ml for m in moulds}, used.material, lips_ml={m.piece: m.lip_ml for m in moulds}).as_dict(),
         timing_s=watch.timing_s(),
         peak_rss_mb=peak_rss_mb(),
-        warnings=[*loaded.notes, *warnings, *remarks, *(flaw for m in moulds for flaw in m.warnings), *uncast],
+        warnings=[*notes, *warnings, *remarks, *(flaw for m in moulds for flaw in m.warnings), *uncast],
     )
     _write_pictures(skin, distortions, report, _registration(moulds, printed, used), folder)
     # The pictures take a while, and the report says how long all of it took.
     report |= {"timing_s": watch.timing_s(), "peak_rss_mb": peak_rss_mb()}
     write_report(report, folder / "report.json")
-    return report, len(loaded.notes)
+    return report, len(notes)
+
+
+def _cut_mesh(args: argparse.Namespace, watch: Stopwatch, progress: Progress) -> Started:
+    """Read a mesh, cut and flatten it."""
+    from skinfab.progress import part_of
+
+    used = steps.profiles(args.printer)
+    progress(0.0, "reading")
+    with watch.phase("load"):
+        loaded = steps.load(args)
+    # A cut is judged by flattening, so most of the flattening is in here.
+    with watch.phase("segment"):
+        seams = steps.cut(args, loaded, used, part_of(progress, 0.05, 0.6))
+    with watch.phase("flatten"):
+        skin, distortions = steps.to_skin(loaded, seams, used=used, max_distortion=args.max_distortion, seed=args.seed)
+    return skin, distortions, used, loaded.notes
+
+
+def _document(args: argparse.Namespace, watch: Stopwatch, progress: Progress) -> Started:
+    """Read a skin document, for the printer it names or another."""
+    from skinfab.document import load_skin
+    from skinfab.flatten.distortion import measure
+
+    progress(0.0, "reading")
+    with watch.phase("load"):
+        skin = load_skin(args.mesh)
+        used = steps.profiles(args.printer or skin.printer, skin.material)
+        skin = replace(skin, printer=used.printer_name)
+    with watch.phase("flatten"):
+        distortions = [measure(p.V(skin.mesh), p.F, p.UV, topology=p.topology) for p in skin.pieces]
+    return skin, distortions, used, ()
 
 
 def _gcode_facts(written: PieceGcode) -> dict[str, Any]:

@@ -19,7 +19,9 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "there already are replaced.",
     )
     p.add_argument("skin", metavar="SKIN", type=Path, help="the skin document")
-    p.add_argument("-o", "--output", metavar="OUT.skin", type=Path, help="where to write the result (default: back to SKIN)")
+    p.add_argument(
+        "-o", "--output", metavar="OUT.skin", type=steps.named(".skin"), help="where to write the result (default: back to SKIN)"
+    )
     p.add_argument("--sensors", metavar="FILE.toml", type=Path, help="which sensors, and where (default: automatic)")
     p.add_argument("--json", action="store_true", help="print one JSON object and nothing else")
     p.set_defaults(run=run)
@@ -52,5 +54,5 @@ def run(args: argparse.Namespace) -> int:
             f"{s.id}: {s.pattern.kind} on {s.piece}, channel {s.channel}, {s.path.length:.1f} mm, "
             f"{r.median:.0f} kohm ({r.low:.0f} to {r.high:.0f})"
         )
-    print(f"{target}: {len(skin.sensors)} sensors")
+    print(f"{target}: {steps.counted(len(skin.sensors), 'sensor')}")
     return 0

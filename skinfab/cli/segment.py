@@ -4,15 +4,8 @@ from __future__ import annotations
 
 import argparse
 import json
-from pathlib import Path
-from typing import TYPE_CHECKING
 
 from skinfab.cli import steps
-
-if TYPE_CHECKING:
-    from skinfab.mesh.io import Loaded
-    from skinfab.seams.auto import Seams
-    from skinfab.seams.judge import Limits
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -25,11 +18,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "over edges.",
     )
     steps.add_mesh_options(p)
-    p.add_argument("-o", "--output", metavar="OUT.skin", type=Path, required=True, help="the document to write")
-    p.add_argument("--cuts", metavar="FILE", type=Path, help="seams by hand: a text file of vertex paths; just these are cut")
-    p.add_argument(
-        "--complete", action="store_true", help="with --cuts: add automatic seams where the hand-made ones do not give good pieces"
-    )
+    p.add_argument("-o", "--output", metavar="OUT.skin", type=steps.named(".skin"), required=True, help="the document to write")
     steps.add_cut_options(p)
     p.add_argument("--json", action="store_true", help="print one JSON object and nothing else")
     p.set_defaults(run=run, wrong_usage=p.error)
@@ -37,20 +26,15 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 def run(args: argparse.Namespace) -> int:
     """Cut, write, and say what came out."""
-    if args.complete and args.cuts is None:
-        args.wrong_usage("--complete goes with --cuts FILE")
+    steps.require_fitting_options(args)
     from skinfab.document import save_skin
     from skinfab.progress import terminal_progress
     from skinfab.seams.cut import seam_length
 
     loaded = steps.load(args)
     used = steps.profiles(args.printer)
-    within = steps.limits(args.max_distortion, used)
     with terminal_progress(quiet=args.json) as progress:
-        if args.cuts is None:
-            seams = steps.cut(loaded, within, neck=used.material.neck, progress=progress)
-        else:
-            seams = _by_hand(args, loaded, within)
+        seams = steps.cut(args, loaded, used, progress)
     skin, distortions = steps.to_skin(loaded, seams, used=used, max_distortion=args.max_distortion, seed=args.seed)
     save_skin(skin, args.output)
     if args.json:
@@ -62,24 +46,5 @@ def run(args: argparse.Namespace) -> int:
         return 0
     for line in steps.piece_lines(skin.pieces, distortions):
         print(line)
-    print(f"{args.output}: {len(skin.pieces)} pieces, {seam_length(loaded.mesh, seams.cut):.0f} mm of seam")
+    print(f"{args.output}: {steps.counted(len(skin.pieces), 'piece')}, {seam_length(loaded.mesh, seams.cut):.0f} mm of seam")
     return 0
-
-
-def _by_hand(args: argparse.Namespace, loaded: Loaded, within: Limits) -> Seams:
-    from skinfab.mesh.io import load_mesh
-    from skinfab.seams.auto import Seams
-    from skinfab.seams.manual import cut_along, read_cuts, seams_by_hand
-    from skinfab.seams.refine import refine_seams
-    from skinfab.seams.weights import seam_weights
-
-    # Numbers in the file count the mesh file's vertices, before any cleaning.
-    raw = load_mesh(args.mesh, units=args.units, scale=args.scale).mesh
-    paths = [raw.V[path] for path in read_cuts(args.cuts, len(raw.V))]
-    by_hand = cut_along(loaded.mesh, paths)
-    if not args.complete:
-        return seams_by_hand(loaded.mesh, by_hand, within)
-    seams = Seams(*refine_seams(loaded.mesh, by_hand, within, seam_weights(loaded.mesh)))
-    added = int((seams.cut & ~by_hand).sum())
-    steps.say([f"{added} edges were cut beyond those given by hand"] if added else [])
-    return seams

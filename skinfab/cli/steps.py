@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -24,9 +24,12 @@ if TYPE_CHECKING:
 
 def positive(text: str) -> float:
     """A finite number above zero, for argparse."""
-    value = float(text)
+    try:
+        value = float(text)
+    except ValueError:
+        value = 0.0
     if not 0 < value < float("inf"):
-        raise argparse.ArgumentTypeError(f"{text} is not a positive number")
+        raise argparse.ArgumentTypeError(f"{text!r} is not a positive number")
     return value
 
 
@@ -38,6 +41,17 @@ def bound(text: str) -> float:
     return value
 
 
+def named(suffix: str) -> Callable[[str], Path]:
+    """A path whose name must end in `suffix`, for argparse: a file is what its name says."""
+
+    def check(text: str) -> Path:
+        if Path(text).suffix.lower() != suffix:
+            raise argparse.ArgumentTypeError(f"{text!r} does not end in {suffix}")
+        return Path(text)
+
+    return check
+
+
 def add_mesh_options(p: argparse.ArgumentParser) -> None:
     """MESH and how to read it."""
     p.add_argument("mesh", metavar="MESH", type=Path, help="OBJ, STL, PLY, OFF or GLB file")
@@ -47,10 +61,20 @@ def add_mesh_options(p: argparse.ArgumentParser) -> None:
 
 
 def add_cut_options(p: argparse.ArgumentParser) -> None:
-    """What pieces have to keep to."""
+    """Where to cut, and what pieces have to keep to."""
+    p.add_argument("--cuts", metavar="FILE", type=Path, help="seams by hand: a text file of vertex paths (see docs/cuts.md); just these")
+    p.add_argument("--complete", action="store_true", help="with --cuts: add automatic seams where those do not give good pieces")
     p.add_argument("--max-distortion", type=bound, default=4.05, metavar="D", help="mean d of a piece at most (default 4.05; 4 is perfect)")
     p.add_argument("--printer", metavar="NAME|FILE", help="printer profile, whose bed the pieces must fit")
     p.add_argument("--seed", type=int, default=0, help="kept in the document; the same seed gives the same result")
+
+
+def require_fitting_options(args: argparse.Namespace) -> None:
+    """Options that do not go together are wrong usage."""
+    if args.complete and args.cuts is None:
+        args.wrong_usage("--complete goes with --cuts FILE")
+    if args.mesh.suffix.lower() == ".skin" and (args.cuts or args.units or args.repair or args.scale != 1.0):
+        args.wrong_usage("a skin document is cut and scaled already: --cuts, --units, --scale and --repair go with a mesh")
 
 
 def load(args: argparse.Namespace) -> Loaded:
@@ -60,6 +84,11 @@ def load(args: argparse.Namespace) -> Loaded:
     loaded = load_usable(args.mesh, units=args.units, scale=args.scale, mend=args.repair)
     say(loaded.notes)
     return loaded
+
+
+def counted(number: int, what: str) -> str:
+    """A number and its noun: 1 piece, 2 pieces."""
+    return f"{number} {what}" + ("" if number == 1 else "s")
 
 
 def say(notes: Sequence[str], *, kind: str = "note") -> None:
@@ -78,7 +107,7 @@ class Profiles:
     material: Material
 
 
-def profiles(printer: str | None = None) -> Profiles:
+def profiles(printer: str | None = None, material: str = "carbon-grease-ecoflex") -> Profiles:
     """Load the profiles; a printer's own file is named by its absolute path, so that the document finds it again."""
     from gcode.printer import DEFAULT_PRINTER, load_printer
     from skinfab.material import load_material
@@ -86,7 +115,6 @@ def profiles(printer: str | None = None) -> Profiles:
     name = printer or DEFAULT_PRINTER
     if name.endswith(".toml"):
         name = str(Path(name).resolve())
-    material = "carbon-grease-ecoflex"
     return Profiles(name, load_printer(name), material, load_material(material))
 
 
@@ -121,11 +149,33 @@ def to_skin(loaded: Loaded, seams: Seams, *, used: Profiles, max_distortion: flo
     return skin, [by_first_face[int(piece.faces[0])] for piece in pieces]
 
 
-def cut(loaded: Loaded, within: Limits, *, neck: float, progress: Progress) -> Seams:
-    """Automatic seams."""
+def cut(args: argparse.Namespace, loaded: Loaded, used: Profiles, progress: Progress) -> Seams:
+    """Automatic seams, or those that ``--cuts`` gives."""
     from skinfab.seams.auto import find_seams
 
-    return find_seams(loaded.mesh, within, neck=neck, progress=lambda done: progress(done, "cutting and flattening"))
+    within = limits(args.max_distortion, used)
+    if args.cuts is not None:
+        return _by_hand(args, loaded, within)
+    return find_seams(loaded.mesh, within, neck=used.material.neck, progress=lambda done: progress(done, "cutting and flattening"))
+
+
+def _by_hand(args: argparse.Namespace, loaded: Loaded, within: Limits) -> Seams:
+    from skinfab.mesh.io import load_mesh
+    from skinfab.seams.auto import Seams
+    from skinfab.seams.manual import cut_along, read_cuts, seams_by_hand
+    from skinfab.seams.refine import refine_seams
+    from skinfab.seams.weights import seam_weights
+
+    # Numbers in the file count the mesh file's vertices, before any cleaning.
+    raw = load_mesh(args.mesh, units=args.units, scale=args.scale).mesh
+    paths = [raw.V[path] for path in read_cuts(args.cuts, len(raw.V))]
+    by_hand = cut_along(loaded.mesh, paths)
+    if not args.complete:
+        return seams_by_hand(loaded.mesh, by_hand, within)
+    seams = Seams(*refine_seams(loaded.mesh, by_hand, within, seam_weights(loaded.mesh)))
+    added = int((seams.cut & ~by_hand).sum())
+    say([f"{added} edges were cut beyond those given by hand"] if added else [])
+    return seams
 
 
 def piece_lines(pieces: Sequence[Piece], distortions: Sequence[Distortion]) -> list[str]:

@@ -19,7 +19,7 @@ from skinfab.errors import InputError
 from skinfab.mesh.model import Mesh
 from skinfab.mesh.obj import parse_obj
 from skinfab.mesh.stl import parse_stl
-from skinfab.mesh.units import guess_units, mm_per
+from skinfab.mesh.units import guess_units, mm_per, odd_size
 
 FORMATS = (".obj", ".stl", ".ply", ".off", ".glb")
 
@@ -98,6 +98,8 @@ def load_mesh(path: str | Path, *, units: str | None = None, scale: float = 1.0)
         if units != "mm" or not guess.sure:
             notes.append(guess.reason)
     factor = mm_per(units) * scale
+    if odd := odd_size(float(np.ptp(V, axis=0).max()) * factor):
+        notes.append(odd)
     mesh = Mesh(V * factor, F, path.stem)
     return Loaded(mesh, path.name, hashlib.sha256(data).hexdigest(), units, factor, tuple(notes))
 

@@ -59,6 +59,20 @@ def guess_units(extent: float) -> UnitGuess:
     return UnitGuess("mm", reason, False)
 
 
+def odd_size(extent_mm: float) -> str:
+    """A sentence where an object of this size is hardly what one puts a skin on; empty otherwise.
+
+    Examples
+    --------
+    >>> odd_size(90.0), odd_size(1411.0)
+    ('', 'the object is 1411 mm long; check --units and --scale')
+    """
+    if 1 <= extent_mm <= _LARGEST_AS_MM:
+        return ""
+    size = f"{extent_mm:.0f}" if extent_mm > 1 else f"{extent_mm:.3g}"
+    return f"the object is {size} mm long; check --units and --scale"
+
+
 def mm_per(units: str) -> float:
     """Millimetres in one `units`; InputError for an unknown unit."""
     if units not in MM_PER_UNIT:

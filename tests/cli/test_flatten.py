@@ -57,7 +57,7 @@ def test_auto_leaves_a_disk_whole_and_says_when_it_is_bent_too_far(tmp_path: Pat
     V, F = shapes.cap(8, 2.0)
     assert main(["flatten", written(tmp_path, V * 30, F), "-o", str(tmp_path / "o.obj")]) == 0
     captured = capsys.readouterr()
-    assert "1 pieces" in captured.out and "more than a skin stands" in captured.err
+    assert "1 piece by" in captured.out and "more than a skin stands" in captured.err
 
 
 @pytest.mark.parametrize(

@@ -44,7 +44,7 @@ def test_units_and_scale() -> None:
     assert load_mesh(CUBE, units="cm", scale=0.5).mesh.bbox[1].tolist() == [200, 200, 200]
     assert load_mesh(CUBE, units="cm", scale=0.5).scale == 5.0
     shrunk = load_mesh(CUBE, scale=0.001)  # the unit is the file's, whatever is made of it
-    assert (shrunk.units, shrunk.scale) == ("mm", 0.001) and shrunk.notes == ()
+    assert (shrunk.units, shrunk.scale) == ("mm", 0.001) and "0.04 mm long" in shrunk.notes[0]
 
 
 @pytest.mark.parametrize("scale", [0, -1, float("nan"), float("inf")])
