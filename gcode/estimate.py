@@ -1,4 +1,4 @@
-"""How long a program takes, how much ink it lays and where the head goes.
+"""How long a program takes, how much ink it lays and where.
 
 Time follows the firmware's own planner: a trapezoid of velocity for each move, bounded at the joints by junction
 deviation (Jeon, "Improving Grbl: cornering algorithm", 2011, as Marlin has it) and over all moves by looking ahead.
@@ -19,7 +19,7 @@ from gcode.program import Clean, Comment, Dwell, Extrude, Prime, Program, Retrac
 
 @dataclass(frozen=True)
 class Summary:
-    """What the report says of one file: text lines, s, mm^3, ((x, y, z) low, high) of the motion in mm, number of arcs."""
+    """What the report says of one file: text lines, s, mm^3, ((x, y, z) low, high) of the ink in mm, number of arcs."""
 
     lines: int
     time_s: float
@@ -41,16 +41,12 @@ class _Block:
 def summarise(program: Program, printer: Printer, *, lines: int) -> Summary:
     """The summary of a program that was emitted as a text of `lines` lines."""
     corners: list[tuple[float, float, float]] = []
-    x: float | None = None
-    y: float | None = None
-    z: float | None = None
+    z = 0.0
     for step in program.steps:
         if isinstance(step, Travel):
-            x, y, z = (old if new is None else new for old, new in zip((x, y, z), (step.x, step.y, step.z), strict=True))
-            corners += [(x, y, z)] if x is not None and y is not None and z is not None else []
+            z = z if step.z is None else step.z
         elif isinstance(step, Extrude):
-            corners += [(*corner, 0.0 if z is None else z) for corner in step.shape.bbox]
-            x, y = step.shape.end
+            corners += [(*corner, z) for corner in step.shape.bbox]
     box = np.array(corners or [(0.0, 0.0, 0.0)])
     low, high = ((float(v[0]), float(v[1]), float(v[2])) for v in (box.min(axis=0), box.max(axis=0)))
     arcs = sum(isinstance(s, Extrude) and isinstance(s.shape, Curve) for s in program.steps)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Literal
 
 from gcode.geometry import Curve
@@ -21,6 +22,7 @@ from gcode.program import (
     Travel,
     quantised,
 )
+from skinfab import __version__
 
 Arcs = Literal["native", "lines"]
 
@@ -73,7 +75,7 @@ def emit(program: Program, printer: Printer, *, arcs: Arcs = "native") -> str:
     Returns
     -------
     str
-        The same program and printer always give the same bytes: there is no date in it.
+        The same program, printer and version of skinfab always give the same bytes: there is no date in it.
 
     Examples
     --------
@@ -93,6 +95,8 @@ def emit(program: Program, printer: Printer, *, arcs: Arcs = "native") -> str:
         f"; piece {program.name}",
         *emit_comment(f"printer {printer.name}"),
         f"; ink {e_per_mm3!r} mm of E for 1 mm^3",
+        *([] if program.bead_area is None else [f"; bead {program.bead_area!r} mm^2 in cross-section"]),
+        *emit_comment(f"made by skinfab {__version__}"),
         *reasons,
         *PREAMBLE,
         *home,
@@ -115,7 +119,7 @@ def with_chords(program: Program, *, tolerance: float) -> Program:
             steps += [Extrude(chord, step.volume / len(chords), step.speed) for chord in chords]
         else:
             steps.append(step)
-    return Program(program.name, tuple(steps))
+    return replace(program, steps=tuple(steps))
 
 
 class _Writer:

@@ -13,7 +13,7 @@ from gcode.program import Clean, Comment, Dwell, Extrude, Prime, Program, Retrac
 from gcode.words import Command, read_commands
 from skinfab.errors import InputError
 
-_HEADER = re.compile(re.escape(TITLE) + r"\n; piece ?(.*)\n; printer .*\n; ink (\S+) mm of E for 1 mm\^3\n")
+_HEADER = re.compile(re.escape(TITLE) + r"\n; piece ?(.*)\n; printer .*\n; ink (\S+) mm of E for 1 mm\^3\n(?:; bead (\S+) mm\^2 .*\n)?")
 
 
 def parse(text: str) -> Program:
@@ -35,19 +35,25 @@ def parse(text: str) -> Program:
     header = _HEADER.match(text)
     if not header:
         raise InputError(f"line 1 is not {TITLE!r} with its facts below; only skinfab's own files can be parsed back, others only checked")
-    try:
-        e_per_mm3 = float(header[2])
-    except ValueError:
-        e_per_mm3 = 0.0
-    if not 0 < e_per_mm3 < float("inf"):
-        raise InputError(f"line 4: {header[2]!r} is no positive number of mm of E")
+    e_per_mm3 = _positive(header[2], 4, "mm of E")
+    bead_area = None if header[3] is None else _positive(header[3], 5, "mm^2")
     lines = text.split("\n")
     if BEGIN not in lines or END not in lines:
         raise InputError(f"the lines {BEGIN!r} and {END!r} are not both there; the file is cut off")
     first, last = lines.index(BEGIN) + 1, len(lines) - 1 - lines[::-1].index(END)
     reader = _Reader(e_per_mm3)
     steps = [reader.step(command) for command in read_commands("\n".join(["", *[""] * (first - 1), *lines[first:last]]))]
-    return Program(header[1], tuple(steps))
+    return Program(header[1], tuple(steps), bead_area)
+
+
+def _positive(text: str, line: int, unit: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = 0.0
+    if not 0 < value < float("inf"):
+        raise InputError(f"line {line}: {text!r} is no positive number of {unit}")
+    return value
 
 
 class _Reader:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from gcode.check_height import free_length
 from gcode.clearance import distance
 from gcode.geometry import Curve, Point, Shape, Straight, shape_of
-from gcode.printer import Printer
+from gcode.printer import Cleaning, Park, Printer
 from gcode.program import Clean, Comment, Dwell, Extrude, Prime, Program, Retract, Step, Travel, on_grid, quantised
 from skinfab.errors import InputError, RefusedError
 from skinfab.material import Material
@@ -65,6 +65,7 @@ def plan(piece: Piece, sensors: Sequence[Sensor], *, printer: Printer, material:
 
     Patterns are printed in the order of nearest neighbours, each from the nearer of its ends, travelling above the
     mould's walls. Each is entered and left along its tangent, and ends with as much ink in the nozzle as it began.
+    At last the head parks, where the profile names a place for it.
 
     Parameters
     ----------
@@ -94,7 +95,8 @@ def plan(piece: Piece, sensors: Sequence[Sensor], *, printer: Printer, material:
     planner.begin()
     for name, path in nearest_order(paths, start=(printer.bed.origin[0], printer.bed.origin[1])):
         planner.pattern(name, path)
-    program = quantised(Program(piece.id, tuple(planner.steps)), e_per_mm3=printer.pump.e_per_mm3)
+    planner.end()
+    program = quantised(Program(piece.id, tuple(planner.steps), float(planner.area)), e_per_mm3=printer.pump.e_per_mm3)
     return Plan(program, offset, tuple(planner.warnings))
 
 
@@ -135,7 +137,7 @@ class _Planner:
         self._lift()
         if (place := self.printer.cleaning) and place.initial_extrude:
             self.steps.append(Comment("first ink, at the cleaning place"))
-            self._to_cleaning()
+            self._go_to(place)
             # In portions, for no command may ask for more E than the firmware accepts.
             count = math.ceil(place.initial_extrude * self.printer.pump.e_per_mm3 / self.printer.pump.max_e)
             self.steps += [self._prime(place.initial_extrude / count)] * count
@@ -167,16 +169,21 @@ class _Planner:
         self._lift()
         if process.pause:
             self.steps.append(Dwell(process.pause))
-        if self.printer.cleaning:
-            self._to_cleaning()
-            self.steps.append(Clean(self.printer.cleaning.seconds))
+        if place := self.printer.cleaning:
+            self._go_to(place)
+            self.steps.append(Clean(place.seconds))
+
+    def end(self) -> None:
+        # Every pattern ends with a lift, so this goes above the walls.
+        if place := self.printer.park:
+            self.steps.append(Comment("park"))
+            self._go_to(place)
 
     def _lift(self) -> None:
         self.steps.append(Travel(z=self.printer.heights.travel, speed=self.printer.motion.z_speed))
 
-    def _to_cleaning(self) -> None:
-        place, origin = self.printer.cleaning, self.printer.bed.origin
-        assert place is not None
+    def _go_to(self, place: Cleaning | Park) -> None:
+        origin = self.printer.bed.origin
         self.steps.append(Travel(place.x + origin[0], place.y + origin[1], speed=self.printer.motion.travel_speed))
 
     def _pump_rate(self) -> float:

@@ -7,7 +7,8 @@ import tomllib
 from dataclasses import MISSING, dataclass, fields
 from importlib import resources
 from pathlib import Path
-from typing import Any, get_type_hints
+from types import NoneType
+from typing import Any, get_args, get_type_hints
 
 from skinfab.errors import InputError
 
@@ -93,8 +94,16 @@ class Cleaning:
 
 
 @dataclass(frozen=True)
+class Park:
+    """Where the head waits at travel height after the last pattern, away from the wet skin (bed frame, mm)."""
+
+    x: float
+    y: float
+
+
+@dataclass(frozen=True)
 class Printer:
-    """A whole profile. `arcs`: the firmware draws G2 and G3; `home`: xyz, xy or none; `cleaning` is optional.
+    """A whole profile. `arcs`: the firmware draws G2 and G3; `home`: xyz, xy or none; `cleaning` and `park` are optional.
 
     Examples
     --------
@@ -112,6 +121,7 @@ class Printer:
     pump: Pump
     process: Process
     cleaning: Cleaning | None = None
+    park: Park | None = None
 
     @property
     def bed_size(self) -> tuple[float, float]:
@@ -182,7 +192,8 @@ def _value(wanted: Any, value: Any, where: str) -> Any:
         if not isinstance(value, wanted):
             raise InputError(f"{where} is {value!r}; it must be {'true or false' if wanted is bool else 'a text in quotes'}")
         return value
-    return _build(Cleaning if wanted == Cleaning | None else wanted, value, where)
+    (table,) = [kind for kind in get_args(wanted) if kind is not NoneType] or [wanted]  # an optional table is a union with None
+    return _build(table, value, where)
 
 
 def _number(value: Any, where: str, *, signed: bool = False) -> float:
@@ -206,6 +217,11 @@ def _check(printer: Printer, where: str) -> None:
             raise InputError(f"{where}, {key} is {value:g}; it must be more than zero")
     if printer.home not in HOME_POLICIES:
         raise InputError(f"{where}, home is {printer.home!r}; it must be one of {', '.join(HOME_POLICIES)}")
+    if (park := printer.park) and not (park.x <= printer.bed.size[0] and park.y <= printer.bed.size[1]):
+        raise InputError(
+            f"{where}, park is at {park.x:g}, {park.y:g}; the bed is {printer.bed.size[0]:g} x {printer.bed.size[1]:g} mm, "
+            "name a place on it, beside the largest skin"
+        )
     if not h.print_min <= h.print <= h.print_max < h.travel <= printer.bed.height:
         raise InputError(f"{where}, heights: print_min <= print <= print_max < travel <= bed height must hold, in mm")
     if not p.flow_min <= p.flow_max:

@@ -89,6 +89,8 @@ class Program:
     name : str
         The piece it prints.
     steps : tuple of steps
+    bead_area : float, mm^2, optional
+        Cross-section of the bead it was planned for, named in the file's header.
 
     Raises
     ------
@@ -104,9 +106,12 @@ class Program:
 
     name: str
     steps: tuple[Step, ...]
+    bead_area: float | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "steps", tuple(self.steps))
+        if self.bead_area is not None and not 0 < self.bead_area < math.inf:
+            raise InputError(f"the bead of program {self.name} is {self.bead_area} mm^2; it must be positive")
         x: float | None = None
         y: float | None = None
         for k, step in enumerate(self.steps):
@@ -161,7 +166,7 @@ def quantised(program: Program, *, e_per_mm3: float) -> Program:
         The printer's E axis, mm per mm^3 of ink.
     """
     grid = _Grid(e_per_mm3)
-    return Program(_plain(program.name), tuple(done for step in program.steps for done in grid.place(step)))
+    return replace(program, name=_plain(program.name), steps=tuple(done for step in program.steps for done in grid.place(step)))
 
 
 class _Grid:

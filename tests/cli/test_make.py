@@ -159,7 +159,12 @@ def test_a_scaled_object_scales_its_skin(tmp_path: Path) -> None:
 
 def test_a_printer_that_is_too_small_gets_smaller_pieces(tmp_path: Path) -> None:
     # The cube's net is 170 mm long; this bed leaves 126 mm between the mould's rims.
-    text = (ROOT / "gcode/profiles/ender5plus-vipro.toml").read_text().replace("size = [350, 350]", "size = [150, 150]")
+    text = (
+        (ROOT / "gcode/profiles/ender5plus-vipro.toml")
+        .read_text()
+        .replace("size = [350, 350]", "size = [150, 150]")
+        .replace("y = 345", "y = 145")
+    )
     (tmp_path / "small.toml").write_text(text)
     assert main(["make", str(ROOT / "meshes/cube.obj"), "-o", str(tmp_path / "out"), "--printer", str(tmp_path / "small.toml")]) == 0
     report = results.read_report(tmp_path / "out")

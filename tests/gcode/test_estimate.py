@@ -100,5 +100,5 @@ def test_the_box_holds_the_arcs_bulge(printer: Printer) -> None:
     half = Extrude(Curve((10.0, 10.0), (20.0, 10.0), (15.0, 10.0), clockwise=True), 1.0, 4.0)
     line = Extrude(Straight((20.0, 10.0), (22.0, 10.0)), 1.0, 4.0)
     steps = (Travel(z=10.0, speed=5.0), Travel(x=10.0, y=10.0, speed=5.0), Travel(z=1.6, speed=5.0), half, line)
-    assert summarise(Program("P1", steps), printer, lines=0).bbox_mm == ((10.0, 10.0, 1.6), (22.0, 15.0, 10.0))
+    assert summarise(Program("P1", steps), printer, lines=0).bbox_mm == ((10.0, 10.0, 1.6), (22.0, 15.0, 1.6))
     assert summarise(Program("P1", ()), printer, lines=0).bbox_mm == ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))

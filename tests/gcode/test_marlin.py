@@ -14,6 +14,7 @@ from gcode.marlin import emit, with_chords
 from gcode.plan import Plan
 from gcode.printer import Printer
 from gcode.program import Clean, Comment, Dwell, Extrude, Program, Travel, quantised
+from skinfab import __version__
 from skinfab.tolerances import ARC_RADIUS_MM
 
 ARC = re.compile(r"^G[23] X(\S+) Y(\S+) I(\S+) J(\S+) E(\S+)", re.MULTILINE)
@@ -33,6 +34,20 @@ def test_modes_come_in_the_one_order_that_works(text: str) -> None:
     wanted = ["G21", "G90", "M83", "M302 P1", "M220 S100", "M221 S100", "M900 K0", "G28 X Y"]
     assert [c for c in commands if c][: len(wanted)] == wanted
     assert commands.count("G90") == 1  # a later one would make E absolute
+
+
+def test_the_header_names_what_the_file_was_made_for(text: str, planned: Plan, printer: Printer) -> None:
+    header = text.partition("\n; begin\n")[0].splitlines()
+    wanted = [
+        "; piece P1",
+        f"; printer {printer.name}",
+        "; ink 8.2644628 mm of E for 1 mm^3",
+        "; bead 0.484 mm^2 in cross-section",
+        f"; made by skinfab {__version__}",
+    ]
+    assert header[1:6] == wanted
+    assert not re.search(r"20\d\d", "".join(header))  # no date: the same bytes every day
+    assert "; bead" not in emit(replace(planned.program, bead_area=None), printer)
 
 
 def test_arc_centres_belong_to_the_rounded_ends(text: str) -> None:

@@ -52,11 +52,13 @@ def test_a_planned_program_comes_back(planned: Plan, printer: Printer) -> None:
         ("; end\n", "", "cut off"),
         ("; ink 8.2644628", "; ink x", "line 4"),
         ("; ink 8.2644628", "; ink nan", "line 4"),
+        ("; bead 0.484", "; bead x", "line 5"),
+        ("; bead 0.484", "; bead -1", "line 5"),
         (" I", " R", "not what skinfab writes"),
-        ("; begin\n", "; begin\nG1 X3 Y3 E1\n", "line 17: no speed"),
-        ("; begin\n", "; begin\nG1 X3 Y3 E1 F6\n", "line 17: it extrudes from an unknown place"),
+        ("; begin\n", "; begin\nG1 X3 Y3 E1\n", "line 19: no speed"),
+        ("; begin\n", "; begin\nG1 X3 Y3 E1 F6\n", "line 19: it extrudes from an unknown place"),
         ("; begin\n", "; begin\nM104 S200\nG0 F6\n", "not what skinfab writes|no speed"),
-        ("; begin\n", "; begin\nG4 P\n", "line 17: a word has no number"),
+        ("; begin\n", "; begin\nG4 P\n", "line 19: a word has no number"),
     ],
 )
 def test_changed_files_say_which_line(planned: Plan, printer: Printer, old: str, new: str, says: str) -> None:

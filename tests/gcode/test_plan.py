@@ -10,7 +10,7 @@ import pytest
 from gcode.check import check_program
 from gcode.geometry import Curve, Straight
 from gcode.plan import Plan, allowed_speed, bed_offset, nearest_order, plan
-from gcode.printer import Cleaning, Printer
+from gcode.printer import Cleaning, Park, Printer
 from gcode.program import Clean, Comment, Dwell, Extrude, Prime, Retract, Travel
 from skinfab.errors import InputError, RefusedError
 from skinfab.material import Material
@@ -63,7 +63,9 @@ def test_each_pattern_is_primed_printed_retracted_and_lifted(planned: Plan, prin
     assert kinds.count(Prime) == kinds.count(Retract) == 2
     starts = [k for k, s in enumerate(planned.program.steps) if isinstance(s, Comment)]
     for k, begin in enumerate(starts):
-        steps = planned.program.steps[begin + 1 : starts[k + 1] if k + 1 < len(starts) else None]
+        if k + 1 == len(starts):
+            break  # the park
+        steps = planned.program.steps[begin + 1 : starts[k + 1]]
         assert isinstance(steps[0], Travel) and steps[0].z is None  # above the walls still
         assert steps[1] == Travel(z=printer.heights.print, speed=printer.motion.z_speed)
         assert Travel(z=printer.heights.travel, speed=printer.motion.z_speed) in steps[-2:]
@@ -79,7 +81,7 @@ def test_entry_and_exit_run_along_the_tangent(make_piece: Callable, make_sensor:
     dx, dy = planned.offset
     travels = [(s.x, s.y) for s in planned.program.steps if isinstance(s, Travel) and s.x is not None]
     expected = [(40 + dx - 3, 40 + dy), (40 + dx - 1, 40 + dy), (70 + dx, 50 + dy + 1.5)]
-    np.testing.assert_allclose(travels, expected, atol=1e-4)
+    np.testing.assert_allclose(travels[:-1], expected, atol=1e-4)
     assert planned.program.ink == pytest.approx(material.ink.bead_area_mm2 * (path.length + 1.0), rel=1e-5)
     assert check_program(planned.program, long) == ()
     assert planned.warnings == ()
@@ -136,6 +138,20 @@ def test_the_papers_speeds_are_lowered_and_reported(
     assert "C1: speed lowered from 100 to 6.198 mm/s on 2 segments by the flow limit of 3 mm^3/s" in planned.warnings
     assert "C1: speed lowered from 200 to 6.198 mm/s on 2 segments by the flow limit of 3 mm^3/s" in planned.warnings
     assert [f for f in check_program(planned.program, seed) if "limit" in f.what and "travel" not in f.what] == []
+
+
+def test_the_head_parks_above_the_walls_at_the_profiles_place(
+    make_piece: Callable, make_sensor: Callable, printer: Printer, material: Material
+) -> None:
+    line = Path((Line((0, 0), (10, 0)),))
+    moved = replace(printer, bed=replace(printer.bed, origin=(-3.0, 2.5)), park=Park(7.0, 300.0))
+    planned = plan(make_piece(60, 60), [make_sensor("A", line, 20, 20)], printer=moved, material=material)
+    assert planned.program.steps[-2:] == (Comment("park"), Travel(4.0, 302.5, speed=printer.motion.travel_speed))
+    heights = [s.z for s in planned.program.steps if isinstance(s, Travel) and s.z is not None]
+    assert heights[-1] == printer.heights.travel
+    bare = plan(make_piece(60, 60), [make_sensor("A", line, 20, 20)], printer=replace(moved, park=None), material=material)
+    assert bare.program.steps == planned.program.steps[:-2]
+    assert check_program(planned.program, moved) == check_program(bare.program, moved) == ()
 
 
 def test_cleaning_after_each_pattern_and_first_ink_there(

@@ -14,6 +14,7 @@ SOURCE = (Path(__file__).parents[2] / "gcode/profiles/ender5plus-vipro.toml").re
 def test_bundled_profiles_load(name: str) -> None:
     printer = load_printer(name)
     assert printer.name and printer.pump.prime == printer.pump.retract
+    assert printer.park is not None and printer.park.x < 10 and printer.park.y > printer.bed.size[1] - 10  # the rear left corner
 
 
 def test_the_default_is_the_papers_machine() -> None:
@@ -48,6 +49,8 @@ def test_a_file_of_ones_own(tmp_path: Path) -> None:
         ("retract = 0.2", "retract = 0.4", "make them equal"),
         ("travel = 10", "travel = 1.65", "heights"),
         ("flow_min = 0.5", "flow_min = 50", "flow_min 50 is above flow_max"),
+        ("y = 345", "y = 351", "park is at 5, 351; the bed is 350 x 350 mm"),
+        ("x = 5 ", "x = -5 ", "park, x is -5"),
         ("[bed]", "[bed", "not a TOML file"),
     ],
 )
@@ -58,6 +61,12 @@ def test_wrong_profiles_say_where(tmp_path: Path, old: str, new: str, says: str)
     with pytest.raises(InputError) as fault:
         load_printer(own)
     assert says in str(fault.value)
+
+
+def test_the_park_may_be_left_out(tmp_path: Path) -> None:
+    own = tmp_path / "mine.toml"
+    own.write_text(SOURCE.partition("[park]")[0], encoding="utf-8")
+    assert load_printer(own).park is None
 
 
 def test_a_table_that_is_none(tmp_path: Path) -> None:

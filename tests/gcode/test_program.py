@@ -63,6 +63,12 @@ def test_empty_steps_vanish_and_comments_become_one_line_of_ascii() -> None:
     assert quantised(Program("P\n1", steps), e_per_mm3=1.0) == Program("P 1", (Comment("D?se " + 75 * "x"), Dwell(0.123)))
 
 
+@pytest.mark.parametrize("bead", [0.0, -1.0, math.nan, math.inf])
+def test_a_bead_is_positive(bead: float) -> None:
+    with pytest.raises(InputError, match="the bead of program P1"):
+        Program("P1", (), bead)
+
+
 START = Travel(x=0.0, y=0.0, speed=1.0)
 
 
