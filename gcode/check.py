@@ -8,6 +8,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
+from gcode.check_commands import command_findings
+from gcode.check_file import file_findings
 from gcode.check_height import height_findings
 from gcode.geometry import Curve, Straight
 from gcode.marlin import emit
@@ -29,7 +31,7 @@ def check_program(program: Program, printer: Printer) -> tuple[Finding, ...]:
 
 
 def check_text(text: str, printer: Printer) -> tuple[Finding, ...]:
-    """Findings about a G-code text, in the order of its lines; empty where it may be printed.
+    """Findings about a G-code text, in the order of its lines; empty where these rules find no fault.
 
     Raises
     ------
@@ -39,7 +41,7 @@ def check_text(text: str, printer: Printer) -> tuple[Finding, ...]:
     Examples
     --------
     >>> from gcode.printer import load_printer
-    >>> text = "G90\\nM83\\nM302 P1\\nG0 X340 Y10 F600\\nG0 Z1.6 F300\\nG3 X340 Y30 I0 J10 E100 F200"
+    >>> text = "G28 X Y\\nM83\\nM302 P1\\nG0 X340 Y10 F600\\nG0 Z1.6 F300\\nG3 X340 Y30 I0 J10 E100 F200\\nG0 Z10 F300"
     >>> for finding in check_text(text, load_printer()):
     ...     print(finding)
     >>> for finding in check_text(text.replace("X340", "X345"), load_printer()):
@@ -47,7 +49,13 @@ def check_text(text: str, printer: Printer) -> tuple[Finding, ...]:
     line 6: it reaches X355.0000, the bed ends at X350.0000; move the pattern inward or choose a larger printer
     """
     judged = trace(text)
-    findings = [*judged.faults, *_homing(judged, printer), *height_findings(judged, printer), *_retracts(judged)]
+    findings = [
+        *file_findings(judged, printer),
+        *judged.faults,
+        *command_findings(judged, printer),
+        *height_findings(judged, printer),
+        *_retracts(judged),
+    ]
     for move in judged.moves:
         for what, remedy in _faults_of(move, printer):
             findings.append(Finding(move.line, what, remedy, move.pattern))
@@ -114,7 +122,7 @@ def _speed(move: Move, printer: Printer) -> Iterator[tuple[str, str]]:
         return
     motion, pump, shape = printer.motion, printer.pump, move.shape
     if move.is_planar and move.speed > motion.max_speed + HALF_F:
-        yield _too_fast(move.speed, motion.max_speed, "the printer's own limit")
+        yield _too_fast(move.speed, motion.max_speed, "the printer in X and Y")
     if not move.is_planar and move.e and abs(move.speed) > pump.max_e_speed + HALF_F:
         yield _too_fast(move.speed, pump.max_e_speed, "the E axis")
     if isinstance(shape, Curve) and move.speed > (limit := math.sqrt(motion.acceleration * shape.radius)) + HALF_F:
@@ -139,13 +147,6 @@ def _speed(move: Move, printer: Printer) -> Iterator[tuple[str, str]]:
 
 def _too_fast(speed: float, limit: float, why: str) -> tuple[str, str]:
     return f"F{speed * 60:.1f} is above F{limit * 60:.1f}, the limit of {why}", f"lower F to {math.floor(limit * 600) / 10:.1f}"
-
-
-def _homing(judged: Trace, printer: Printer) -> Iterator[Finding]:
-    if printer.home == "xyz":
-        return
-    for line in judged.homes_z:
-        yield Finding(line, "it homes Z: the probe dips into the wet mould", "home with G28 X Y and set Z = 0 by hand")
 
 
 def _retracts(judged: Trace) -> Iterator[Finding]:

@@ -7,6 +7,7 @@ is an InputError that names the line.
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -29,6 +30,11 @@ class Finding:
     what: str
     remedy: str
     pattern: str = ""
+
+    @property
+    def kind(self) -> str:
+        """What it says but for the numbers: the same for all findings of one sort."""
+        return re.sub(r"-?\d[\d.]*", "#", self.what)
 
     def __str__(self) -> str:
         where = f"line {self.line}" if self.line else "file"
@@ -81,11 +87,11 @@ class Move:
 
 @dataclass(frozen=True)
 class Trace:
-    """Moves of a text, the faults of its wording, and the lines that home Z."""
+    """Moves of a text, the faults of its wording, and all its commands (comments alone have the code "")."""
 
     moves: tuple[Move, ...]
     faults: tuple[Finding, ...]
-    homes_z: tuple[int, ...]
+    commands: tuple[Command, ...]
 
 
 def trace(text: str) -> Trace:
@@ -103,9 +109,21 @@ def trace(text: str) -> Trace:
     (3.141593, ())
     """
     head = _Head()
-    for command in read_commands(text):
+    commands = tuple(read_commands(text))
+    for command in commands:
         head.follow(command)
-    return Trace(tuple(head.moves), tuple(head.faults), tuple(head.homes_z))
+    return Trace(tuple(head.moves), tuple(head.faults), commands)
+
+
+def homed_axes(command: Command) -> str:
+    """Axes that a G28 homes: those it names, or all.
+
+    Examples
+    --------
+    >>> [homed_axes(command) for command in read_commands("G28 Y X\\nG28")]
+    ['XY', 'XYZ']
+    """
+    return "".join(axis for axis in "XYZ" if axis in command.words) or "XYZ"
 
 
 class _Head:
@@ -114,7 +132,6 @@ class _Head:
     def __init__(self) -> None:
         self.moves: list[Move] = []
         self.faults: list[Finding] = []
-        self.homes_z: list[int] = []
         self.place: list[float | None] = [None, None, None]  # of the machine, mm
         self.shift = [0.0, 0.0, 0.0]  # machine place minus the place as written, set by G92
         self.e = 0.0  # as written, for absolute E
@@ -254,10 +271,7 @@ class _Head:
             self.shift[k] = here - value * self.scale
 
     def _home(self, command: Command) -> None:
-        named = [axis for axis in "XYZ" if axis in command.words] or list("XYZ")
-        for axis in named:
+        for axis in homed_axes(command):
             # Where the end stops are is the machine's affair: the place is known to it, not to the text.
             self.place["XYZ".index(axis)] = None
             self.shift["XYZ".index(axis)] = 0.0
-        if "Z" in named:
-            self.homes_z.append(command.line)

@@ -10,8 +10,12 @@ from pathlib import Path
 
 from skinfab.errors import InputError
 
-#: Commands whose words are read; any other line (heaters, messages, fans) is passed over as it stands.
-READ = frozenset({"G0", "G1", "G2", "G3", "G4", "G5", "G20", "G21", "G28", "G90", "G91", "G92", "M82", "M83", "M302"})
+#: Heaters, which may name a tool by T.
+HEATERS = frozenset({"M104", "M109", "M140", "M141", "M190", "M191"})
+
+#: Commands whose words are read; any other line (messages, fans) is passed over as it stands.
+READ = HEATERS | {"G0", "G1", "G2", "G3", "G4", "G5", "G20", "G21", "G28", "G90", "G91", "G92"}
+READ |= {"M82", "M83", "M206", "M220", "M221", "M302"}
 
 #: A line beyond this is not G-code, and a file beyond that is not a skin's.
 LINE_LIMIT, FILE_LIMIT = 4096, 256 * 2**20
@@ -38,9 +42,11 @@ def read_text(path: str | Path) -> str:
     Raises
     ------
     InputError
-        The file is missing, unreadable, binary or far too large.
+        The file is missing, a folder, unreadable, binary or far too large.
     """
     path = Path(path)
+    if path.is_dir():
+        raise InputError(f"{path} is a folder; give one G-code file{_example_in(path)}")
     try:
         if path.stat().st_size > FILE_LIMIT:
             raise InputError(f"{path} is larger than {FILE_LIMIT >> 20} MiB; that is not the G-code of a skin")
@@ -53,6 +59,12 @@ def read_text(path: str | Path) -> str:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError:
         return data.decode("latin-1")  # old slicers write their comments so
+
+
+def _example_in(folder: Path) -> str:
+    # A results folder keeps its files one level down.
+    found = min([*folder.glob("*.gcode"), *folder.glob("*/*.gcode")], default=None)
+    return f", such as {found}" if found else ", there is none in it"
 
 
 def read_commands(text: str) -> Iterator[Command]:
@@ -82,11 +94,11 @@ def read_commands(text: str) -> Iterator[Command]:
             raise InputError(f"line {line}: cannot read {_shown(body)}; a command begins with G, M or T and a number")
         letter, number, sub = found.groups()
         code = f"{letter.upper()}{int(number)}{sub or ''}"
-        words = _words(body[found.end() :], line, flags=code == "G28") if code in READ else {}
+        words = _words(body[found.end() :], line, code) if code in READ else {}
         yield Command(line, code, words, comment.strip(), len(raw.encode()))
 
 
-def _words(rest: str, line: int, *, flags: bool) -> dict[str, float | None]:
+def _words(rest: str, line: int, code: str) -> dict[str, float | None]:
     words: dict[str, float | None] = {}
     at = 0
     while at < len(rest):
@@ -94,12 +106,12 @@ def _words(rest: str, line: int, *, flags: bool) -> dict[str, float | None]:
         if not found:
             raise InputError(f"line {line}: cannot read {_shown(rest[at:])}; a word is one letter and one number")
         letter = found[1].upper()
-        if found[2] is None and rest[found.end() : found.end() + 1].isalpha() and not flags:
+        if found[2] is None and rest[found.end() : found.end() + 1].isalpha() and code != "G28":  # it takes flags, G28 XY
             raise InputError(f"line {line}: cannot read {_shown(rest[at:].strip())}; a word is one letter and one number")
         value = None if found[2] is None else float(found[2])
         if value is not None and not math.isfinite(value):
             raise InputError(f"line {line}: {letter} is not a finite number; write it out in millimetres")
-        if letter in words or letter in "GMT":
+        if letter in words or letter in ("GM" if code in HEATERS else "GMT"):
             raise InputError(f"line {line}: a second {letter} on one line; give each command a line of its own")
         words[letter] = value
         at = found.end()

@@ -13,9 +13,6 @@ if TYPE_CHECKING:
     from gcode.trace import Finding
     from gcode.write import PieceGcode
 
-#: Findings shown before the rest is only counted; --json lists all.
-SHOWN = 20
-
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Add the command and its options."""
@@ -99,14 +96,17 @@ def _check(args: argparse.Namespace) -> int:
         print(json.dumps({"file": file, "printer": printer.name, "ok": not findings, "findings": [asdict(f) for f in findings]}))
         return RefusedError.exit_status if findings else 0
     if not findings:
-        print(f"{file}: nothing found; it may be printed on {printer.name}")
+        print(f"{file}: no fault found by these rules on {printer.name}")
         return 0
     _show(findings)
     raise RefusedError(f"{file} has {len(findings)} fault{'s' * (len(findings) > 1)} on {printer.name}; correct them before printing")
 
 
 def _show(findings: tuple[Finding, ...]) -> None:
-    for finding in findings[:SHOWN]:
-        print(finding)
-    if len(findings) > SHOWN:
-        print(f"... and {len(findings) - SHOWN} more (--json lists all)")
+    """One line for each kind of fault, at the first place that has it; --json lists every place."""
+    kinds: dict[str, list[Finding]] = {}
+    for finding in findings:
+        kinds.setdefault(finding.kind, []).append(finding)
+    for alike in kinds.values():
+        more = len({f.line for f in alike}) - 1
+        print(f"{alike[0]} (and {more} more line{'s' * (more > 1)} like it)" if more else alike[0])

@@ -37,7 +37,7 @@ def test_writes_what_its_own_check_accepts(document: Path, tmp_path: Path, capsy
     assert str(file) in capsys.readouterr().out
     assert "\nG3 " in read_text(file)
     assert main(["gcode", "check", str(file)]) == 0
-    assert "nothing found" in capsys.readouterr().out
+    assert "no fault found by these rules on Creality" in capsys.readouterr().out
 
 
 def test_json_and_arcs_as_lines(document: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -58,14 +58,31 @@ def test_check_refuses_a_foreign_file_line_by_line(tmp_path: Path, capsys: pytes
     assert said.err.count("\n") == 1 and "faults on Creality" in said.err
     assert main(["gcode", "check", str(file), "--json"]) == 3
     answer = json.loads(capsys.readouterr().out)
-    assert answer["ok"] is False and {f["line"] for f in answer["findings"]} == {5, 6}
+    assert answer["ok"] is False and {f["line"] for f in answer["findings"]} == {0, 5, 6}  # 0: it never homes
 
 
-def test_long_lists_are_cut_on_a_terminal_only(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_terminal_gets_one_line_for_each_kind_of_fault(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "many.gcode"
-    file.write_text("G90\nM83\nM302 P1\nG0 Z10 F300\n" + "G0 X400 Y1\nG0 X1 Y1\n" * 30)
+    moves = "".join(f"G0 X{400 + k} Y1\nG0 X1 Y1\n" for k in range(30))
+    file.write_text("G28 X Y\nM83\nM302 P1\nG0 Z10 F300\n" + moves + "G0 X1 Y-5\nG0 X1 Y-6\nM104 S200\n")
     assert main(["gcode", "check", str(file)]) == 3
-    assert "... and 10 more" in capsys.readouterr().out
+    first, second, third = capsys.readouterr().out.splitlines()
+    assert first.startswith("line 5: it reaches X400.0000") and first.endswith("(and 29 more lines like it)")
+    assert second.startswith("line 65: it reaches Y-5.0000") and second.endswith("(and 1 more line like it)")
+    assert third.startswith("line 67: M104 heats") and "like it" not in third
+    assert main(["gcode", "check", str(file), "--json"]) == 3
+    assert len(json.loads(capsys.readouterr().out)["findings"]) == 33
+
+
+def test_what_is_no_print_at_all(document: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "empty.gcode").write_bytes(b"")
+    assert main(["gcode", "check", str(tmp_path / "empty.gcode")]) == 3
+    assert "no move in it" in capsys.readouterr().out
+    assert main(["gcode", str(document), "-o", str(tmp_path / "out")]) == 0
+    capsys.readouterr()
+    assert main(["gcode", "check", str(tmp_path / "out")]) == 1
+    said = capsys.readouterr()
+    assert not said.out and said.err.count("\n") == 1 and f"such as {tmp_path / 'out/P1.gcode'}" in said.err
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ from gcode.geometry import Straight
 from gcode.printer import Printer
 from gcode.trace import trace
 
-HEAD = "G21\nG90\nM83\nM302 P1\nG0 Z10 F300\nG0 X100 Y100 F6000\nG0 Z1.6 F300\n"
+HEAD = "G28 X Y\nG90\nM83\nM302 P1\nG0 Z10 F300\nG0 X100 Y100 F6000\nG0 Z1.6 F300\n"
 LINE = "G1 X110 Y100 E40 F240\n"
 
 
@@ -28,7 +28,7 @@ LINE = "G1 X110 Y100 E40 F240\n"
     ],
 )
 def test_low_travel(body: str, says: str | None, printer: Printer) -> None:
-    faults = [f.what for f in check_text(HEAD + body, printer)]
+    faults = [f.what for f in check_text(HEAD + body + "\nG0 Z10 F300", printer)]
     assert (not faults) if says is None else any(says in what for what in faults), faults
 
 

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gcode.geometry import Curve
-from gcode.trace import Move, trace
+from gcode.trace import Finding, Move, homed_axes, trace
 from skinfab.errors import InputError
 
 START = "G21\nG90\nM83\nM302 P1\nG0 X0 Y0 Z1 F600\n"
@@ -54,8 +54,13 @@ def test_places_nobody_knows() -> None:
     t = trace("G28\nG0 Z5 F60\nG0 X1 Y2")
     assert t.moves[0].end == (None, None, 5.0) and t.moves[0].shape is None
     assert t.moves[1].end == (1.0, 2.0, 5.0)
-    assert t.homes_z == (1,)
-    assert trace("G28 X Y").homes_z == ()
+    assert [homed_axes(c) for c in t.commands if c.code == "G28"] == ["XYZ"]
+    assert homed_axes(trace("G28 Y X").commands[0]) == "XY"
+
+
+def test_findings_of_one_kind_differ_by_numbers_only() -> None:
+    fast, faster, other = (Finding(k, what, "") for k, what in enumerate(("F480.0 is above F-1.", "F7 is above F9", "E7 is above F9")))
+    assert fast.kind == faster.kind != other.kind
 
 
 def test_patterns_are_named_by_comments() -> None:

@@ -19,6 +19,7 @@ from skinfab.errors import InputError
         ("G28 XY", "G28", {"X": None, "Y": None}),
         ("G1 X1 (a note) Y2", "G1", {"X": 1.0, "Y": 2.0}),
         ("M117 Printing... 50% done!", "M117", {}),
+        ("M104 T0 S200", "M104", {"T": 0.0, "S": 200.0}),
         ("M302P1", "M302", {"P": 1.0}),
         ("G38.2 Z-5", "G38.2", {}),
         ("G1 X1e5", "G1", {"X": 1.0, "E": 5.0}),  # as Marlin reads it: E is an axis, never an exponent
@@ -70,13 +71,22 @@ def test_files_that_are_no_text(tmp_path: Path) -> None:
         read_text(binary)
     with pytest.raises(InputError, match=r"cannot read .*No such file"):
         read_text(tmp_path / "absent.gcode")
-    with pytest.raises(InputError, match="cannot read"):
-        read_text(tmp_path)
     huge = tmp_path / "huge.gcode"
     with huge.open("wb") as out:
         out.truncate(300 * 2**20)  # a hole: takes no disk and is never read
     with pytest.raises(InputError, match="larger than"):
         read_text(huge)
+
+
+def test_a_folder_names_a_file_to_give_instead(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="is a folder; give one G-code file, there is none in it"):
+        read_text(tmp_path)
+    (tmp_path / "gcode").mkdir()
+    for name in ("P2.gcode", "P1.gcode"):
+        (tmp_path / "gcode" / name).write_text("")
+    for folder in (tmp_path, tmp_path / "gcode"):
+        with pytest.raises(InputError, match=r"is a folder; give one G-code file, such as .*/gcode/P1\.gcode"):
+            read_text(folder)
 
 
 def test_old_comments_are_read(tmp_path: Path) -> None:

@@ -1,0 +1,104 @@
+"""Every rule of the table refuses its planted fault, and lets the harmless neighbour of it pass."""
+
+from dataclasses import replace
+
+import pytest
+
+from gcode.check import check_text
+from gcode.check_commands import RULES
+from gcode.marlin import emit
+from gcode.plan import Plan
+from gcode.printer import Printer
+from gcode.words import READ
+
+SOUND = "G28 X Y\nM83\nM302 P1\nG0 Z10 F300\nG0 X100 Y100 F6000\nG0 Z1.6 F300\n{wet}G1 X110 Y100 E40 F240\n{after}G0 Z10 F300\n"
+
+
+def found(printer: Printer, home: str, *, wet: str = "", after: str = "") -> list[tuple[int, str]]:
+    text = SOUND.format(wet=wet and wet + "\n", after=after and after + "\n")
+    homing = {"xyz": "G28", "xy": "G28 X Y", "none": "; by hand"}[home]
+    findings = check_text(text.replace("G28 X Y", homing, 1), replace(printer, home=home))
+    return [(f.line, f.what) for f in findings]
+
+
+@pytest.mark.parametrize("home", ["xyz", "xy", "none"])
+def test_the_sound_file_is_sound(printer: Printer, planned: Plan, home: str) -> None:
+    assert not found(printer, home)
+    assert not check_text(emit(planned.program, replace(printer, home=home)), replace(printer, home=home))
+
+
+@pytest.mark.parametrize(
+    ("home", "line", "says"),
+    [
+        ("xy", "G29", "G29 probes"),
+        ("none", "G29 P1", "G29 probes"),
+        ("xy", "G30 X10 Y10", "G30 probes"),
+        ("xy", "G38.2 Z-5", "G38.2 probes"),
+        ("xy", "M48 P10", "M48 probes"),
+        ("xy", "G34", "G34 probes"),
+        ("xy", "G28 Z", "homes Z"),
+        ("none", "G28 Z", "homes Z"),
+        ("none", "G28 X", "it homes X, the profile homes nothing"),
+        ("xy", "M104 S200", "M104 heats"),
+        ("xyz", "M104 T0 S200", "M104 heats"),
+        ("xy", "M109 R60", "M109 heats"),
+        ("xy", "M140 S60", "M140 heats"),
+        ("xy", "M140 I1", "M140 heats"),
+        ("xy", "M190 S0.5", "M190 heats"),
+        ("none", "M141 S40", "M141 heats"),
+        ("xy", "M191 S40", "M191 heats"),
+        ("xy", "M303 E0 S200", "M303 heats"),
+        ("xy", "G92 Z0.3", "G92 shifts the Z"),
+        ("none", "G92 X100 Z1.6", "G92 shifts the X and Z"),
+        ("xy", "M206 Z-2", "M206 shifts the Z"),
+        ("xy", "G92.1", "G92.1 undoes"),
+        ("none", "M428", "M428 undoes"),
+        ("xy", "G1 Q140 F240", "G1 does not know Q140"),
+        ("xy", "G0 B2 Q", "G0 does not know B2 Q"),
+        ("xy", "G3 X110 Y100 I5 J0 K2 E60 F200", "G3 does not know K2"),
+        ("xy", "G92 E0 A5", "G92 does not know A5"),
+        ("xy", "G4 X2", "G4 does not know X2"),
+        ("xy", "G3 X110 Y100 I5 J0 P2 E60 F200", "adds whole circles"),
+        ("xy", "G10", "no rule can judge"),
+        ("xy", "G27", "no rule can judge"),
+        ("xy", "M600", "no rule can judge"),
+        ("xy", "M221 S150", "M221 scales"),
+        ("xy", "M220 S50", "M220 scales"),
+    ],
+)
+def test_planted_faults(printer: Printer, home: str, line: str, says: str) -> None:
+    assert any(at == 7 and says in what for at, what in found(printer, home, wet=line)), found(printer, home, wet=line)
+
+
+@pytest.mark.parametrize("line", ["G28", "G28 Z", "G29", "G30"])
+def test_a_printer_that_homes_z_does_so_before_the_ink(printer: Printer, line: str) -> None:
+    assert any(at == 8 and "wet mould" in what for at, what in found(printer, "xyz", after=line))
+    assert not check_text(SOUND.format(wet="", after="").replace("G28 X Y", f"G28\n{line}"), replace(printer, home="xyz"))
+
+
+@pytest.mark.parametrize(
+    ("home", "line"),
+    [
+        ("xyz", "G92 Z1.6"),  # the place it is at
+        ("xy", "G92 X100 Y100 E0"),
+        ("none", "G92 E0"),
+        ("xy", "M206 X1"),
+        ("xy", "M104 S0"),
+        ("xy", "M140 T0 S0"),
+        ("xy", "M190 R0"),
+        ("xy", "M109"),
+        ("xy", "G1 F240 S0"),
+        ("xy", "G4 P100"),
+        ("xy", "M220 S100"),
+        ("xy", "M221 S100"),
+        ("xy", "M106 S255"),
+        ("xy", "M117 Heating is off, 0% Q"),
+    ],
+)
+def test_harmless_neighbours_pass(printer: Printer, home: str, line: str) -> None:
+    assert not found(printer, home, wet=line)
+
+
+def test_every_rule_that_asks_for_words_gets_them() -> None:
+    asking = {code for rule in RULES if rule.when.__name__ not in ("_always", "_probes", "_shifts_all") for code in rule.codes}
+    assert asking <= READ
