@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,9 +13,10 @@ import numpy as np
 from skinfab.drawings.sheet import sheet_offsets
 from skinfab.files import atomic_write
 from skinfab.flatten.distortion import Distortion
-from skinfab.report.object_view import SEAM_COLOUR, SENSOR_COLOUR, View, object_image, piece_colour, sensor_points
+from skinfab.report.labels import Room, dense
+from skinfab.report.object_view import SEAM_COLOUR, SENSOR_COLOUR, Picture, View, object_picture, piece_colour, sensor_points
 from skinfab.report.raster import rasterise
-from skinfab.report.words import count, percent
+from skinfab.report.words import count
 from skinfab.skin import Skin
 from skinfab.tolerances import PREVIEW_CHORD_MM
 
@@ -27,7 +29,12 @@ D_RANGE = (4.0, 4.2)
 
 _ELEVATION = 22.0  # degrees
 _DPI = 150
-_ROWS_OF_TABLE = 9
+#: Pixels between a label and any line.
+_CLEAR = 3.0
+#: As many names fit in a title.
+_FEW = 4
+#: A label farther from what it names than this, pixels, gets a line to it.
+_LEADER = 60.0
 
 
 def draw_preview(skin: Skin, distortions: Sequence[Distortion], report: Mapping[str, Any], path: str | Path) -> None:
@@ -42,54 +49,157 @@ def draw_preview(skin: Skin, distortions: Sequence[Distortion], report: Mapping[
         As `build_report` gives it.
     path : path
     """
-    figure = _figure(13.0, 9.4)
-    grid = figure.add_gridspec(2, 2, left=0.04, right=0.945, top=0.96, bottom=0.045, wspace=0.10, hspace=0.16, height_ratios=(1.0, 1.05))
-    _draw_object(figure.add_subplot(grid[0, 0]), skin)
-    _draw_numbers(figure.add_subplot(grid[0, 1]), report)
-    _draw_sheet(figure.add_subplot(grid[1, 0]), skin)
-    _draw_distortion(figure.add_subplot(grid[1, 1]), skin, distortions)
+    figure = _figure(13.0, 9.8)
+    top = figure.add_gridspec(1, 2, left=0.03, right=0.97, top=0.96, bottom=0.56, wspace=0.06, width_ratios=(1.75, 1.0))
+    below = figure.add_gridspec(1, 2, left=0.03, right=0.945, top=0.515, bottom=0.02, wspace=0.06)
+    _draw_object(figure.add_subplot(top[0, 0]), skin)
+    _draw_numbers(figure.add_subplot(top[0, 1]), report)
+    _draw_sheet(figure.add_subplot(below[0, 0]), skin)
+    _draw_distortion(figure.add_subplot(below[0, 1]), skin, distortions)
     atomic_write(path, _png(figure))
 
 
 def _draw_object(axes: Axes, skin: Skin) -> None:
-    """The object from two sides, side by side."""
+    """The object from opposite sides, side by side: what one view does not show, the other one does."""
     box = axes.get_window_extent()
     width, height = int(box.width / 2), int(box.height)
     x, y, z = np.ptp(skin.mesh.bbox, axis=0)
-    # The longer side of the object lies across the picture; what one view does not show, the opposite one does.
+    # The longer side of the object lies across the picture.
     front = -60.0 if x >= y else -30.0
-    views = [View(azimuth, _ELEVATION) for azimuth in (front, front + 180)]
+    views = [View(front, _ELEVATION), View(front + 180, -_ELEVATION)]
     # Half a pixel of the picture, whichever way the object is turned.
     lines = sensor_points(skin, spacing=0.25 * max(x, y, z) / max(width, height))
-    images = [object_image(skin, view, lines, width=width, height=height) for view in views]
-    axes.imshow(np.hstack(images), interpolation="none", aspect="equal")
-    size = f"{x:.0f} x {y:.0f} x {z:.0f}"
-    axes.set_title(f"The object from two sides, {size} mm; seams in red", fontsize=10, loc="left")
+    pictures = [object_picture(skin, view, lines, width=width, height=height) for view in views]
+    axes.imshow(np.hstack([picture.image for picture in pictures]), interpolation="none", aspect="equal")
+    for k, picture in enumerate(pictures):
+        _name_parts(axes, skin, picture, left=k * width)
+    hidden = [sensor.id for k, sensor in enumerate(skin.sensors) if not any(k in picture.sensors for picture in pictures)]
+    few = ", ".join(hidden) if len(hidden) <= _FEW else count(hidden, "sensor")
+    not_seen = f" (not seen: {few})" if hidden else ""
+    axes.set_title(f"The object from the front and above, and from the back and below; seams in red{not_seen}", fontsize=10, loc="left")
     axes.set_axis_off()
 
 
+def _name_parts(axes: Axes, skin: Skin, picture: Picture, *, left: float) -> None:
+    """The sensors' names on their middles, the pieces' where there is most room for them."""
+    height, width = picture.piece.shape
+    free = picture.piece >= 0
+    free &= ~picture.drawn
+    for k, (column, row) in picture.sensors.items():
+        name = skin.sensors[k].id
+        _with_halo(axes, (left + column, row), name, size=8.5)
+        half = 9.0 * len(name)
+        free[max(int(row - 16), 0) : int(row + 16), max(int(column - half), 0) : int(column + half)] = False
+    for k, piece in enumerate(skin.pieces):
+        rows, columns = np.nonzero(free & (picture.piece == k))
+        if not len(rows):
+            continue
+        room = Room(width, height)
+        room.fill(~(free & (picture.piece == k)))
+        size = _text_size(axes, piece.id, 9)
+        place = room.place(size, near=(float(columns.mean()), float(rows.mean())))
+        if place is not None:
+            _with_halo(axes, (left + place[0], place[1]), piece.id, size=9, colour=(0.35, 0.0, 0.0))
+
+
 def _draw_sheet(axes: Axes, skin: Skin) -> None:
-    """The flat pieces with their sensors, to scale."""
+    """The flat pieces with their sensors, to scale, each with the origin of its own coordinates."""
     from matplotlib.collections import LineCollection, PolyCollection
 
     offsets = sheet_offsets(skin.pieces)
     outlines = [piece.outline + offset for piece, offset in zip(skin.pieces, offsets, strict=True)]
     colours = [piece_colour(k) for k in range(len(outlines))]
     axes.add_collection(PolyCollection(outlines, facecolors=colours, edgecolors=[SEAM_COLOUR], linewidths=0.9))
-    _sheet_axes(axes, outlines, "Flat pieces and sensors, mm")
-    points_per_mm = 72 / _DPI * axes.get_window_extent().width / float(np.ptp(axes.get_xlim()))
+    _sheet_axes(axes, outlines, "Flat pieces and sensors; + is the origin (0, 0) of a piece, sizes in mm")
+    sheet = _Sheet(axes)
+    for outline in outlines:
+        sheet.take(outline, closed=True)
+    points_per_mm = 72 / _DPI * sheet.pixels_per_mm
     names = {piece.id: offset for piece, offset in zip(skin.pieces, offsets, strict=True)}
     for sensor in skin.sensors:
         line = sensor.printed_path.to_polyline(tolerance=PREVIEW_CHORD_MM) + names[sensor.piece]
         bead = max(sensor.pattern.bead * points_per_mm, 0.5)
         axes.add_collection(LineCollection([line], colors=[SENSOR_COLOUR], linewidths=bead, capstyle="round", joinstyle="round"))
+        sheet.take(line, width=bead * _DPI / 72)
+    for offset in offsets:
+        # The lower left corner of its box, where it counts from.
+        axes.plot(*offset, marker="+", color="black", markersize=7, markeredgewidth=1.0)
+        sheet.take(offset[None], width=14)
+    sheet.scale_bar()
+    for sensor in skin.sensors:
         # Behind the pads, where the wires will be.
-        behind = (sensor.path.start + sensor.path.end) / 2 - (sensor.pattern.pad + 3.0) * np.array(
-            [np.cos(sensor.angle), np.sin(sensor.angle)]
+        pads = (sensor.path.start + sensor.path.end) / 2
+        behind = pads - (sensor.pattern.pad + 2.0) * np.array([np.cos(sensor.angle), np.sin(sensor.angle)])
+        sheet.label([sensor.id], near=behind + names[sensor.piece], of=pads + names[sensor.piece], size=8, colour="white", box="black")
+    for piece, offset in zip(skin.pieces, offsets, strict=True):
+        width, height = piece.size
+        sheet.label([f"{piece.id}  {width:.0f} x {height:.0f}", piece.id], near=offset, of=offset, size=8, colour="black", box="white")
+
+
+class _Sheet:
+    """The panel with the flat pieces: labels in mm, where there is room for them."""
+
+    def __init__(self, axes: Axes) -> None:
+        axes.apply_aspect()
+        self.axes = axes
+        self.box = axes.get_window_extent()
+        self.room = Room(self.box.width, self.box.height)
+        self.pixels_per_mm = self.box.width / float(np.ptp(axes.get_xlim()))
+
+    def _pixels(self, points: np.ndarray) -> np.ndarray:
+        at: np.ndarray = self.axes.transData.transform(points) - (self.box.x0, self.box.y0)
+        return at
+
+    def take(self, line: np.ndarray, *, width: float = 1.0, closed: bool = False) -> None:
+        """Keep a line (k, 2) mm of that width in pixels free of labels."""
+        self.room.take(dense(self._pixels(line), closed=closed), radius=width / 2 + _CLEAR)
+
+    def label(self, texts: Sequence[str], *, near: np.ndarray, of: np.ndarray, size: float, colour: str, box: str) -> None:
+        """Write the first of `texts` that there is room for, nearest to `near`; with a line to `of` where it comes to lie far off."""
+        for text in texts:
+            width, height = _text_size(self.axes, text, size)
+            at = self.room.place((width + 6, height + 6), near=self._pixels(near))
+            if at is None:
+                continue
+            target = self._pixels(of)
+            place, end = (self.axes.transData.inverted().transform(np.add(xy, (self.box.x0, self.box.y0))) for xy in (at, target))
+            if float(np.hypot(*np.subtract(at, target))) > _LEADER + width / 2:
+                self.axes.plot([place[0], end[0]], [place[1], end[1]], color="0.35", linewidth=0.6, zorder=2.5)
+            _label(self.axes, place, text, size=size, colour=colour, box=box)
+            return
+
+    def scale_bar(self) -> None:
+        """A bar of a round length, in the free place nearest to the lower left corner."""
+        length = round_length(0.22 * self.box.width / self.pixels_per_mm)
+        text = f"{length:g} mm"
+        width, height = length * self.pixels_per_mm, _text_size(self.axes, text, 9)[1]
+        at = self.room.place((width + 16, height + 20), near=(0.0, 0.0))
+        if at is None:
+            return
+        middle = self.axes.transData.inverted().transform(np.add(at, (self.box.x0, self.box.y0)))
+        y = middle[1] - height / 2 / self.pixels_per_mm
+        self.axes.plot(
+            [middle[0] - length / 2, middle[0] + length / 2],
+            [y, y],
+            color="black",
+            linewidth=2.0,
+            marker="|",
+            markersize=7,
+            solid_capstyle="butt",
         )
-        _label(axes, behind + names[sensor.piece], sensor.id, size=8, colour="white", box="black")
-    for piece, outline in zip(skin.pieces, outlines, strict=True):
-        _label(axes, outline[np.argmin(outline @ (1.0, 1.0))], piece.id, size=9, colour="black", box="white")
+        self.axes.text(middle[0], y + 7 / self.pixels_per_mm, text, fontsize=9, ha="center", va="bottom")
+
+
+def round_length(longest: float) -> float:
+    """The largest of 1, 2, 5 times a power of ten that is not longer.
+
+    Examples
+    --------
+    >>> round_length(37.0), round_length(0.6), round_length(100.0)
+    (20.0, 0.5, 100.0)
+    """
+    power = 10.0 ** np.floor(np.log10(longest))
+    return float(max(digit * power for digit in (1, 2, 5) if digit * power <= longest))
 
 
 def _draw_distortion(axes: Axes, skin: Skin, distortions: Sequence[Distortion]) -> None:
@@ -134,52 +244,35 @@ def _distortion_image(
 
 
 def _draw_numbers(axes: Axes, report: Mapping[str, Any]) -> None:
+    """What one asks first; the page has the tables."""
+    axes.set_axis_off()
+    axes.text(0.0, 1.0, _printable(report["mesh"]["file"])[:28], fontsize=15, weight="bold", va="top", parse_math=False)
+    for k, (name, value) in enumerate(_numbers(report)):
+        y = 0.88 - 0.085 * k
+        axes.text(0.0, y, name, fontsize=11, color="0.4", va="top", parse_math=False)
+        axes.text(0.24, y, value, fontsize=11, va="top", parse_math=False)
+
+
+def _numbers(report: Mapping[str, Any]) -> list[tuple[str, str]]:
     d, mesh = report["distortion"], report["mesh"]
-    parts = f"{count(report['pieces'], 'piece')}, {report['seam_mm']:.0f} mm of seams"
+    size = " x ".join(f"{high - low:.1f}" for low, high in zip(*mesh["bbox_mm"], strict=True))
+    kinds = Counter(s["kind"] for s in report["sensors"])
     lines = [
-        f"{_printable(mesh['file'])[:40]}: {mesh['n_faces']} faces, {parts}",
-        f"d mean {d['mean']:.4f}  p99 {d['p99']:.4f}  max {d['max']:.4f}",
-        "",
-        f"{'piece':<8}{'faces':>8}{'area mm2':>11}{'d mean':>9}{'d p99':>9}{'d max':>9}",
-        *_rows(
-            [
-                f"{p['id'][:8]:<8}{p['n_faces']:>8}{p['area_mm2']:>11.1f}"
-                f"{p['distortion']['mean']:>9.4f}{p['distortion']['p99']:>9.4f}{p['distortion']['max']:>9.3f}"
-                for p in report["pieces"]
-            ]
-        ),
-        "",
+        ("object", f"{size} mm"),
+        ("", f"{mesh['n_faces']:,} triangles"),
+        ("pieces", f"{len(report['pieces'])}, with {report['seam_mm']:.0f} mm of seams"),
+        ("distortion", f"mean {d['mean']:.4f} (4 is perfect)"),
+        ("", f"99 % under {d['p99']:.3f}, largest {d['max']:.3f}"),
+        ("sensors", ", ".join(f"{number} {kind}" for kind, number in sorted(kinds.items())) or "none"),
     ]
-    if report["sensors"]:
-        lines += [
-            f"{'sensor':<8}{'kind':<15}{'piece':<7}{'mm':>7}{'kohm (90 %)':>20}{'wrap strain':>13}",
-            *_rows(
-                [
-                    f"{s['id'][:7]:<8}{s['kind'][:14]:<15}{s['piece'][:6]:<7}{s['length_mm']:>7.1f}{_interval(s['resistance_kohm']):>20}"
-                    f"{percent(s['wrap_strain']['mean']):>11.2f} %"
-                    for s in report["sensors"]
-                ]
-            ),
-            "",
-        ]
     if report["gcode"]:
         time_s, ink = sum(g["time_s"] for g in report["gcode"]), sum(g["ink_mm3"] for g in report["gcode"])
-        lines += [f"G-code: {count(report['gcode'], 'file')}, {time_s / 60:.1f} min, {ink:.0f} mm3 of ink"]
+        lines += [("ink", f"{ink:.0f} mm\u00b3 in {count(report['gcode'], 'file')}"), ("printing", f"{time_s / 60:.1f} min")]
     if report["moulds"]:
-        lines += [f"Moulds: {count(report['moulds'], 'file')}, {sum(m['cavity_ml'] for m in report['moulds']):.1f} ml of silicone"]
-    axes.set_axis_off()
-    # One size for all lines: as large as the longest and their number allow.
-    size = min(9.2, 250 / max(len(lines), 1), 640 / max(len(line) for line in lines))
-    axes.text(0.0, 1.0, "\n".join(lines), family="monospace", fontsize=size, va="top", transform=axes.transAxes, parse_math=False)
-
-
-def _interval(kohm: Mapping[str, float]) -> str:
-    return f"{kohm['median']:.0f} ({kohm['low']:.0f}-{kohm['high']:.0f})"
-
-
-def _rows(rows: list[str]) -> list[str]:
-    """As many rows as there is room for; the rest by their number."""
-    return rows if len(rows) <= _ROWS_OF_TABLE else [*rows[: _ROWS_OF_TABLE - 1], f"... and {len(rows) - _ROWS_OF_TABLE + 1} more"]
+        lines += [("silicone", f"{sum(m['cavity_ml'] for m in report['moulds']):.1f} ml in {count(report['moulds'], 'mould')}")]
+    if report["warnings"]:
+        lines += [("warnings", f"{len(report['warnings'])}, see report.html")]
+    return lines
 
 
 def _printable(text: str) -> str:
@@ -190,14 +283,39 @@ def _printable(text: str) -> str:
 def _label(axes: Axes, at: np.ndarray, text: str, *, size: float, colour: str, box: str) -> None:
     frame = {"boxstyle": "round,pad=0.15", "facecolor": box, "edgecolor": "none", "alpha": 0.75}
     axes.text(
-        float(at[0]), float(at[1]), text, fontsize=size, color=colour, ha="center", va="center", bbox=frame, parse_math=False, clip_on=True
+        float(at[0]),
+        float(at[1]),
+        text,
+        fontsize=size,
+        color=colour,
+        ha="center",
+        va="center",
+        bbox=frame,
+        parse_math=False,
+        clip_on=True,
+        zorder=4,
     )
+
+
+def _with_halo(axes: Axes, at: tuple[float, float], text: str, *, size: float, colour: Any = "black") -> None:
+    from matplotlib.patheffects import withStroke
+
+    halo = [withStroke(linewidth=2.5, foreground="white")]
+    axes.text(*at, text, fontsize=size, weight="bold", color=colour, ha="center", va="center", path_effects=halo, parse_math=False)
+
+
+def _text_size(axes: Axes, text: str, size: float) -> tuple[float, float]:
+    """Width and height of a text, pixels."""
+    trial = axes.text(0, 0, text, fontsize=size, weight="bold", parse_math=False)
+    box = trial.get_window_extent()
+    trial.remove()
+    return float(box.width), float(box.height)
 
 
 def _sheet_axes(axes: Axes, outlines: list[np.ndarray], title: str) -> None:
     points = np.vstack([*outlines, np.zeros((1, 2))])
     low, high = points.min(axis=0), points.max(axis=0)
-    margin = 0.04 * float((high - low).max()) + 1.0
+    margin = 0.05 * float((high - low).max()) + 1.0
     # Widen the shorter side to the shape of the panel, so that "equal" leaves its size alone.
     box = axes.get_window_extent()
     size = high - low + 2 * margin
@@ -206,7 +324,9 @@ def _sheet_axes(axes: Axes, outlines: list[np.ndarray], title: str) -> None:
     axes.set_xlim(middle[0] - size[0] / 2, middle[0] + size[0] / 2)
     axes.set_ylim(middle[1] - size[1] / 2, middle[1] + size[1] / 2)
     axes.set_aspect("equal")
-    axes.tick_params(labelsize=8)
+    # Each piece has its own coordinates, so the sheet shows none.
+    axes.set_xticks([])
+    axes.set_yticks([])
     axes.set_title(title, fontsize=10, loc="left")
 
 

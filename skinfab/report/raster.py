@@ -107,12 +107,12 @@ def _planes(corners: FloatArray) -> FloatArray:
     return np.stack([z[:, 0] - gx * corners[:, 0, 0] - gy * corners[:, 0, 1], gx, gy, z.min(axis=1), z.max(axis=1)], axis=1)
 
 
-def visible_points(points: FloatArray, depth: FloatArray, *, slack: float) -> IntArray:
-    """Rows and columns of those `points` (k, 3) that are no farther than the surface there by more than `slack`, (j, 2)."""
+def is_visible(points: FloatArray, depth: FloatArray, *, slack: float) -> NDArray[np.bool_]:
+    """Which of the `points` (k, 3) lie in the picture and no farther than the surface there by more than `slack`, (k,)."""
     column, row = np.rint(points[:, 0]).astype(np.int64), np.rint(points[:, 1]).astype(np.int64)
     inside = (row >= 0) & (row < depth.shape[0]) & (column >= 0) & (column < depth.shape[1])
-    row, column, z = row[inside], column[inside], points[inside, 2]
-    behind_it = depth[row, column]
+    surface = np.full(len(points), np.inf)
+    surface[inside] = depth[row[inside], column[inside]]
     # At the outline a hidden point may round to a pixel beyond the surface that hides it.
-    seen = np.isfinite(behind_it) & (z <= behind_it + slack)
-    return np.stack([row[seen], column[seen]], axis=1)
+    seen: NDArray[np.bool_] = np.isfinite(surface) & (points[:, 2] <= surface + slack)
+    return seen

@@ -12,8 +12,9 @@ from skinfab.flatten.distortion import Distortion
 from skinfab.material import load_material
 from skinfab.progress import PHASES
 from skinfab.report.build import build_report
-from skinfab.report.object_view import SEAM_COLOUR, SENSOR_COLOUR, View, object_image, on_object, piece_colour, sensor_points
-from skinfab.report.preview import draw_preview
+from skinfab.report.labels import dense
+from skinfab.report.object_view import SEAM_COLOUR, SENSOR_COLOUR, View, object_picture, on_object, piece_colour, sensor_points
+from skinfab.report.preview import _draw_sheet, _figure, draw_preview
 from skinfab.skin import Skin, Source
 
 TIMING = {**dict.fromkeys(PHASES, 0.5), "total": 3.5}
@@ -66,18 +67,70 @@ def test_front_and_back_of_a_box(skin: Skin) -> None:
     # From straight in front (-y) only the wall y = 0 is seen: the seam at its left edge, the first 60 mm of the strip.
     skin = dataclasses.replace(skin, sensors=skin.sensors[1:])
     lines = sensor_points(skin, spacing=0.2)
-    image = object_image(skin, View(azimuth=-90.0, elevation=0.0), lines, width=132, height=112)
-    drawn = ~near(image, (1, 1, 1))
+    picture = object_picture(skin, View(azimuth=-90.0, elevation=0.0), lines, width=132, height=112)
+    drawn = ~near(picture.image, (1, 1, 1))
     rows, columns = np.flatnonzero(drawn.any(axis=1)), np.flatnonzero(drawn.any(axis=0))
     assert np.ptp(rows) + 1 == pytest.approx(100, abs=2) and np.ptp(columns) + 1 == pytest.approx(120, abs=2)  # 50 x 60 mm
-    red = near(image, SEAM_COLOUR, 0.25)
+    red = near(picture.image, SEAM_COLOUR, 0.25)
     assert red.any() and np.flatnonzero(red.any(axis=0)).max() < columns.min() + 6
-    assert near(image, SENSOR_COLOUR, 0.3).sum() > 50  # C1 is on this wall
-    # From behind, neither.
-    behind = object_image(skin, View(azimuth=90.0, elevation=0.0), lines, width=132, height=112)
-    assert not near(behind, SEAM_COLOUR, 0.25).any() and not near(behind, SENSOR_COLOUR, 0.3).any()
+    assert near(picture.image, SENSOR_COLOUR, 0.3).sum() > 50  # C1 is on this wall
+    assert (picture.piece[20:90, 20:110] == 0).all() and picture.piece[0, 0] == -1
+    assert picture.drawn[red].all() and not picture.drawn[0].any()
+    # C1's name stands on it: where its path lies on the wall, at two pixels a mm.
+    ((k, (column, row)),) = picture.sensors.items()
+    box = skin.sensors[0].path.bbox
+    assert k == 0 and (box[0] < ((column - 6) / 2, (106 - row) / 2)).all() and (((column - 6) / 2, (106 - row) / 2) < box[1]).all()
+    # From behind, none of it, though an open wall shows its inside.
+    behind = object_picture(skin, View(azimuth=90.0, elevation=0.0), lines, width=132, height=112)
+    assert not near(behind.image, SEAM_COLOUR, 0.25).any() and not near(behind.image, SENSOR_COLOUR, 0.3).any()
+    assert behind.sensors == {}
+
+
+@pytest.mark.parametrize("azimuth", [0.0, 40.0, -75.0])
+def test_a_sensor_on_the_inner_side_has_no_name(azimuth: float, skin: Skin) -> None:
+    # Seen from above through the open top, the far wall shows its inside, on which no sensor faces the eye.
+    lines = sensor_points(skin, spacing=0.2)
+    for elevation in (60.0, -60.0):
+        view = View(azimuth, elevation)
+        seen = object_picture(skin, view, lines, width=200, height=160).sensors
+        for k in seen:
+            towards = lines.normal[lines.sensor == k] @ view.axes()[2]
+            assert (towards < 0).mean() >= 0.3
+
+
+def test_opposite_views_show_every_side_of_an_object(skin: Skin) -> None:
+    one, other = View(-60.0, 22.0).axes(), View(120.0, -22.0).axes()
+    np.testing.assert_allclose(one[2], -other[2], atol=1e-12)
 
 
 def test_points_of_the_flat_piece_find_their_place_on_the_object(skin: Skin) -> None:
-    flat = np.array([[30.0, 10.0], [90.0, 20.0], [150.0, 30.0], [1000.0, 0.0]])
-    np.testing.assert_allclose(on_object(skin, skin.pieces[0], flat), [[30, 0, 10], [60, 30, 20], [30, 60, 30]], atol=1e-9)
+    flat = np.array([[30.0, 10.0], [90.0, 20.0], [1000.0, 0.0], [150.0, 30.0]])
+    at, face, on = on_object(skin, skin.pieces[0], flat)
+    np.testing.assert_allclose(at, [[30, 0, 10], [60, 30, 20], [30, 60, 30]], atol=1e-9)
+    assert on.tolist() == [True, True, False, True]
+    np.testing.assert_allclose(skin.mesh.face_normals[face], [[0, -1, 0], [1, 0, 0], [0, 1, 0]], atol=1e-9)
+
+
+def test_the_scale_bar_is_as_long_as_it_says(skin: Skin) -> None:
+    figure = _figure(6.0, 5.0)
+    axes = figure.add_subplot()
+    _draw_sheet(axes, skin)
+    (text,) = [t.get_text() for t in axes.texts if t.get_text().endswith(" mm")]
+    bars = [np.asarray(line.get_xdata(), dtype=float) for line in axes.lines if line.get_linewidth() == 2.0]
+    assert [np.ptp(bar) for bar in bars] == [pytest.approx(float(text.removesuffix(" mm")))]
+    assert axes.get_aspect() == 1 and not len(axes.get_xticks()) and not len(axes.get_yticks())
+
+
+def test_labels_of_the_sheet_cover_neither_lines_nor_each_other(skin: Skin) -> None:
+    figure = _figure(6.0, 5.0)
+    axes = figure.add_subplot()
+    _draw_sheet(axes, skin)
+    figure.canvas.draw()
+    boxes = [text.get_window_extent() for text in axes.texts]
+    assert {text.get_text() for text in axes.texts} >= {"S1", "C1", "P1  240 x 50"}
+    for k, box in enumerate(boxes):
+        assert not any(box.overlaps(other) for other in boxes[:k])
+        for sensor in skin.sensors:
+            line = axes.transData.transform(sensor.printed_path.to_polyline(tolerance=0.02))
+            assert not box.count_contains(dense(line))
+        assert not box.count_contains(dense(axes.transData.transform(skin.pieces[0].outline), closed=True))

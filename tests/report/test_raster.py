@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import skinfab.report.raster as raster
-from skinfab.report.raster import rasterise, visible_points
+from skinfab.report.raster import is_visible, rasterise
 
 
 def brute_force(points: np.ndarray, F: np.ndarray, rows: int, columns: int) -> tuple[np.ndarray, np.ndarray]:
@@ -76,4 +76,6 @@ def test_a_sliver_on_edge_stays_within_its_own_depths() -> None:
 def test_points_behind_are_hidden() -> None:
     depth = np.full((4, 4), 10.0)
     points = np.array([[1.0, 2, 9.0], [1, 1, 10.4], [2, 2, 11.0], [9, 9, 0.0]])
-    assert visible_points(points, depth, slack=0.5).tolist() == [[2, 1], [1, 1]]
+    assert is_visible(points, depth, slack=0.5).tolist() == [True, True, False, False]
+    depth[2, 1] = np.inf  # beside the object
+    assert not is_visible(points[:1], depth, slack=0.5).any()
