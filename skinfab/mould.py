@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from skinfab.drawings.seam_sides import seam_sides
 from skinfab.errors import InputError, RefusedError
@@ -19,6 +19,7 @@ from skinfab.mould_plan import MouldPlan, mould_plan
 from skinfab.pieces import Piece
 from skinfab.skin import Skin
 from skinfab.tolerances import CAVITY_FRACTION
+from skinfab.wire_exits import WirePad, WireSlot, wire_pads
 
 #: How far the wall stands above the silicone, mm: the pour does not run over before it levels, and
 #: a 0.25 mm wire lies in a slot of this depth without the slot reaching the silicone.
@@ -47,6 +48,8 @@ class CastingMould:
     marks : (3, 2) float, mm
         The L marks' corner points: lower left, lower right, upper left. The lower left one is what
         the nozzle is jogged to.
+    wire_slots : tuple of WireSlot
+        Which pad's wire leaves where; a pad without a slot is named in `warnings`.
     warnings : tuple of str
     """
 
@@ -61,6 +64,7 @@ class CastingMould:
     cavity_ml: float
     lip_ml: float
     marks: NDArray[np.float64]
+    wire_slots: tuple[WireSlot, ...]
     warnings: tuple[str, ...]
 
     def __repr__(self) -> str:
@@ -71,13 +75,19 @@ class CastingMould:
         """Every edge has one triangle on either side, wound alike."""
         return is_watertight(self.F)
 
+    @property
+    def size_mm(self) -> tuple[float, float, float]:
+        """Outer width, depth and height (x, y, z)."""
+        w, d, h = (round(float(extent), 3) for extent in np.ptp(self.V.astype(np.float64), axis=0))
+        return w, d, h
+
 
 def casting_mould(
     piece: Piece,
     *,
     material: Material,
     depth: float | None = None,
-    exits: Sequence[ArrayLike] = (),
+    pads: Sequence[WirePad] = (),
     lips: Sequence[NDArray[np.float64]] = (),
 ) -> CastingMould:
     """The mould of one flat piece: floor plate, wall, registration marks, wire slots, adhesive lips.
@@ -93,8 +103,8 @@ def casting_mould(
         Its `mould` table holds the dimensions.
     depth : float, mm, optional
         Of the silicone; the material's layers together by default.
-    exits : sequence of (2,) float, mm
-        Terminals, in the piece frame.
+    pads : sequence of WirePad
+        The contact pads on this piece; each gets a slot for its wire where a straight wire reaches a wall.
     lips : sequence of (k, 2) float, mm
         Runs of the piece's outline, in its direction, that get a lip where there is room.
 
@@ -116,7 +126,7 @@ def casting_mould(
     depth = material.depth if depth is None else depth
     if not (np.isfinite(depth) and depth > 0):
         raise InputError(f"the silicone's depth is {depth:g} mm; it must be positive")
-    plan = mould_plan(piece, mould=material.mould, exits=exits, lips=lips)
+    plan = mould_plan(piece, mould=material.mould, pads=pads, lips=lips)
     floor_z = material.mould.floor
     fill_z, top_z = floor_z + depth, floor_z + depth + FREEBOARD_MM
     lip_depth = min(material.layers[-1].depth, depth) if material.layers else depth
@@ -126,11 +136,13 @@ def casting_mould(
     cavity, lip = (_hollow(V, F, region, floor_z, fill_z) for region in (plan.block, plan.lip))
     _require(cavity, piece.area, depth, f"cavity of piece {piece.id}")
     _require(lip, plan.lip.area, lip_depth, f"lip of piece {piece.id}")
-    return CastingMould(piece.id, V, F, floor_z, fill_z, top_z, piece.area, depth, cavity / 1000, lip / 1000, plan.marks, plan.warnings)
+    return CastingMould(
+        piece.id, V, F, floor_z, fill_z, top_z, piece.area, depth, cavity / 1000, lip / 1000, plan.marks, plan.wire_slots, plan.warnings
+    )
 
 
 def skin_moulds(skin: Skin, *, material: Material) -> list[CastingMould]:
-    """One mould a piece that can be cast: a wire slot for either terminal of each sensor, a lip on one side of each seam."""
+    """One mould a piece that can be cast: a wire slot for either pad of each sensor, a lip on one side of each seam."""
     sewn: set[str] = set()
     lips: dict[int, list[NDArray[np.float64]]] = {}
     for side in seam_sides(skin.pieces):
@@ -141,7 +153,7 @@ def skin_moulds(skin: Skin, *, material: Material) -> list[CastingMould]:
         casting_mould(
             piece,
             material=material,
-            exits=[end for s in skin.sensors_on(piece.id) for end in (s.path.start, s.path.end)],
+            pads=wire_pads(skin.sensors_on(piece.id)),
             lips=lips.get(k, []),
         )
         for k, piece in enumerate(skin.pieces)

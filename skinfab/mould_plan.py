@@ -11,8 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import shapely
-import shapely.ops
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 from shapely.geometry import MultiPolygon, Polygon, box
 from shapely.geometry.base import BaseGeometry
 
@@ -20,6 +19,7 @@ from skinfab.errors import InputError
 from skinfab.material import Mould
 from skinfab.pieces import Piece
 from skinfab.tolerances import MOULD_GRID_MM, MOULD_SLIT_MM, OVERLAP_FRACTION, PRINTABLE_WALL_MM
+from skinfab.wire_exits import WirePad, WireSlot, plan_exits, slot_region, through_wall
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,6 +46,8 @@ class MouldPlan:
         The L marks as cut.
     slots : MultiPolygon
         The wire exits as cut.
+    wire_slots : tuple of WireSlot
+        Which pad has which of them.
     warnings : tuple of str
         Places the printer or the silicone will not follow the outline.
     """
@@ -59,10 +61,11 @@ class MouldPlan:
     marks: NDArray[np.float64]
     grooves: MultiPolygon
     slots: MultiPolygon
+    wire_slots: tuple[WireSlot, ...]
     warnings: tuple[str, ...]
 
 
-def mould_plan(piece: Piece, *, mould: Mould, exits: Sequence[ArrayLike] = (), lips: Sequence[NDArray[np.float64]] = ()) -> MouldPlan:
+def mould_plan(piece: Piece, *, mould: Mould, pads: Sequence[WirePad] = (), lips: Sequence[NDArray[np.float64]] = ()) -> MouldPlan:
     """Plan a piece's mould.
 
     Parameters
@@ -70,10 +73,11 @@ def mould_plan(piece: Piece, *, mould: Mould, exits: Sequence[ArrayLike] = (), l
     piece : Piece
     mould : Mould
         Its dimensions, from the material profile.
-    exits : sequence of (2,) float, mm
-        Terminals in the piece frame; each gets a slot in the nearest wall that has the outside behind it.
+    pads : sequence of WirePad
+        The contact pads on this piece; each gets a slot for its wire, see `skinfab.wire_exits.plan_exits`.
     lips : sequence of (k, 2) float, mm
-        Runs of the outline, in its direction, that get an adhesive lip where there is room.
+        Runs of the outline, in its direction, that get an adhesive lip where there is room; a lip is broken
+        where a slot crosses it.
 
     Raises
     ------
@@ -88,17 +92,27 @@ def mould_plan(piece: Piece, *, mould: Mould, exits: Sequence[ArrayLike] = (), l
             )
     if not mould.mark > 0:
         raise InputError("mould.mark is 0 mm; the G-code origin is found by the marks, so give their arm a length in the material profile")
-    if len(exits) and not mould.wire_exit > 0:
+    if len(pads) and not mould.wire_exit > 0:
         raise InputError("mould.wire_exit is 0 mm but the piece has terminals; give the slot a width in the material profile")
     cavity = cavity_region(piece)
     if cavity.is_empty:
         raise InputError(f"piece {piece.id} has no area to cast; flatten it again")
-    lip = _lip_region(piece, cavity, lips, mould)
+    slots, notes = plan_exits(pads, piece=piece.id, cavity=cavity, outer=_outer(cavity, mould), mould=mould) if len(pads) else ([], ())
+    # Either side of a slot a wall stays towards the lip; the way out is free as far as a lip of this seam reaches.
+    ways_out = shapely.union_all([slot_region(s, mould.wire_exit + 2 * mould.wall, longer=mould.lip + mould.wall) for s in slots])
+    lip = _lip_region(piece, cavity, lips, ways_out, mould)
     lip_cut = _on_grid(lip.buffer(5 * MOULD_SLIT_MM, join_style="mitre"))
-    # Gaps between two outer walls that are narrower than half a wall are filled: nothing cleans them.
-    fill = mould.wall / 2
-    grown = (cavity | lip).buffer(mould.wall + fill, join_style="mitre", mitre_limit=2)
-    outer = _on_grid(grown.buffer(-fill, join_style="mitre", mitre_limit=2))
+    outer = _outer(cavity | lip, mould)
+    through = [through_wall(slot, cavity=cavity, outer=outer) for slot in slots]
+    blocked = tuple(
+        f"piece {piece.id}: the wire of pad {s.terminal} of {s.sensor} near ({s.pad[0]:.1f}, {s.pad[1]:.1f}) mm finds its way out "
+        "blocked by lips, so it has no slot: lead it out over the wall's top"
+        for s, t in zip(slots, through, strict=True)
+        if t is None
+    )
+    wire_slots = tuple(slot for slot in through if slot is not None)
+    # Past either end by as much as the end of an oblique slot is skewed.
+    cuts = [slot_region(slot, mould.wire_exit, longer=mould.wire_exit) for slot in wire_slots if not slot.shared]
     wall = _on_grid(outer - cavity)
     xmin, ymin, xmax, ymax = outer.bounds
     plate = box(xmin - mould.mark, ymin - mould.mark, xmax + mould.mark, ymax + mould.mark)
@@ -106,7 +120,6 @@ def mould_plan(piece: Piece, *, mould: Mould, exits: Sequence[ArrayLike] = (), l
     low, high = np.array([xmin, ymin]) - inset, np.array([xmax, ymax]) + inset
     marks = np.array([low, [high[0], low[1]], [low[0], high[1]]])
     grooves = [_l_mark(corner, inward, mould) for corner, inward in zip(marks, [(1, 1), (-1, 1), (1, -1)], strict=True)]
-    slots = [_slot(np.asarray(point, dtype=float), cavity, outer, mould) for point in exits]
     return MouldPlan(
         cavity=cavity,
         lip=lip,
@@ -116,8 +129,9 @@ def mould_plan(piece: Piece, *, mould: Mould, exits: Sequence[ArrayLike] = (), l
         plate=plate,
         marks=marks,
         grooves=_on_grid(shapely.union_all(grooves)),
-        slots=_on_grid(shapely.union_all(slots)),
-        warnings=(*_narrow_places(piece, cavity, _on_grid(wall - lip_cut), mould), *_short_lips(piece, lip, lips)),
+        slots=_on_grid(shapely.union_all(cuts)),
+        wire_slots=wire_slots,
+        warnings=(*notes, *blocked, *_narrow_places(piece, cavity, _on_grid(wall - lip_cut), mould), *_short_lips(piece, lip, lips)),
     )
 
 
@@ -138,8 +152,18 @@ def cavity_region(piece: Piece) -> MultiPolygon:
     return _on_grid(healed)
 
 
-def _lip_region(piece: Piece, cavity: MultiPolygon, lips: Sequence[NDArray[np.float64]], mould: Mould) -> MultiPolygon:
-    """Strips of the lip's width outside the given runs, a wall away from every other edge and lip."""
+def _outer(inside: BaseGeometry, mould: Mould) -> MultiPolygon:
+    """What the walls round `inside` enclose."""
+    # Gaps between two outer walls that are narrower than half a wall are filled: nothing cleans them.
+    fill = mould.wall / 2
+    grown = inside.buffer(mould.wall + fill, join_style="mitre", mitre_limit=2)
+    return _on_grid(grown.buffer(-fill, join_style="mitre", mitre_limit=2))
+
+
+def _lip_region(
+    piece: Piece, cavity: MultiPolygon, lips: Sequence[NDArray[np.float64]], ways_out: BaseGeometry, mould: Mould
+) -> MultiPolygon:
+    """Strips of the lip's width outside the given runs, a wall away from every other edge and lip, broken by the wires' ways out."""
     boundary = shapely.LinearRing(piece.outline)
     strips: list[BaseGeometry] = []
     for points in lips:
@@ -148,7 +172,7 @@ def _lip_region(piece: Piece, cavity: MultiPolygon, lips: Sequence[NDArray[np.fl
         strip: BaseGeometry = run.buffer(-mould.lip, single_sided=True, join_style="mitre", mitre_limit=2)
         others = boundary - run.buffer(MOULD_SLIT_MM)
         # On one grid GEOS cannot lose its way: in floating point a thousand-edged outline made it give up.
-        strip = _on_grid(_on_grid(strip) - cavity - shapely.union_all([others, *strips]).buffer(mould.wall))
+        strip = _on_grid(_on_grid(strip) - cavity - shapely.union_all([others, *strips]).buffer(mould.wall) - ways_out)
         # What is left between two darts may be a splinter that tears off with the skin: it goes. The chinks
         # that this leaves towards the cavity would be films of plastic: they are filled again.
         half = mould.wall / 2
@@ -189,24 +213,6 @@ def _l_mark(corner: NDArray[np.float64], inward: tuple[int, int], mould: Mould) 
     across_x = box(min(x - half, x + along), y - half, max(x + half, x + along), y + half)
     across_y = box(x - half, min(y - half, y + up), x + half, max(y + half, y + up))
     return across_x | across_y
-
-
-def _slot(point: NDArray[np.float64], cavity: MultiPolygon, outer: MultiPolygon, mould: Mould) -> BaseGeometry:
-    """A straight cut through the wall nearest to `point` that has the outside behind it."""
-    if point.shape != (2,) or not np.isfinite(point).all():
-        raise InputError(f"a wire exit is {point.tolist()}; it must be a point (x, y) in mm")
-    # Not through a dart: the wire would come out over the other flank.
-    shore = shapely.MultiLineString([part.exterior for part in outer.geoms]).buffer(mould.wall * 1.05)
-    exposed = cavity.boundary & shore
-    if exposed.is_empty:
-        exposed = cavity.boundary
-    at, _ = shapely.ops.nearest_points(exposed, shapely.Point(point))
-    start = np.array([at.x, at.y])
-    outside, _ = shapely.ops.nearest_points(outer.boundary, at)
-    way = np.array([outside.x, outside.y]) - start
-    way /= np.hypot(*way)
-    cut = shapely.LineString([start - way * mould.wall / 2, start + way * mould.wall * 2])
-    return cut.buffer(mould.wire_exit / 2, cap_style="flat")
 
 
 def _narrow_places(piece: Piece, cavity: MultiPolygon, wall: MultiPolygon, mould: Mould) -> tuple[str, ...]:

@@ -17,6 +17,7 @@ from skinfab.errors import InputError, RefusedError
 from skinfab.material import load_material
 from skinfab.mould import FREEBOARD_MM, CastingMould, casting_mould, is_watertight, write_mould
 from skinfab.pieces import Piece
+from skinfab.wire_exits import WirePad
 
 MATERIAL = load_material()
 
@@ -85,6 +86,10 @@ PIECES = {
 }
 
 
+def pad_at(x: float, y: float, *, terminal: int = 1) -> WirePad:
+    return WirePad("C1", terminal, np.array([x, y]))
+
+
 def read_back(mould: CastingMould, folder: Path) -> trimesh.Trimesh:
     write_mould(mould, folder / "P1.stl")
     return trimesh.load_mesh(folder / "P1.stl")
@@ -98,8 +103,8 @@ def filled(solid: trimesh.Trimesh, points: list[list[float]]) -> NDArray[np.bool
 @pytest.mark.parametrize("name", PIECES)
 def test_stl_is_watertight_and_its_cavity_is_area_times_depth(name: str, tmp_path: Path) -> None:
     piece = PIECES[name]
-    terminals = [piece.UV.mean(axis=0), piece.UV[0]]
-    mould = casting_mould(piece, material=MATERIAL, exits=terminals)
+    pads = [pad_at(*piece.UV.mean(axis=0)), pad_at(*piece.UV[0], terminal=2)]
+    mould = casting_mould(piece, material=MATERIAL, pads=pads)
     solid = read_back(mould, tmp_path)
     assert solid.is_watertight and solid.is_winding_consistent and solid.volume > 0 and mould.watertight
     assert len(solid.split(only_watertight=False)) == 1
@@ -143,7 +148,7 @@ def test_marks_are_grooves_where_they_are_said_to_be(tmp_path: Path) -> None:
 
 
 def test_slots_let_the_wire_out_above_the_silicone_only(tmp_path: Path) -> None:
-    mould = casting_mould(PIECES["rectangle"], material=MATERIAL, exits=[(3.0, 12.0)])
+    mould = casting_mould(PIECES["rectangle"], material=MATERIAL, pads=[pad_at(3.0, 12.0)])
     solid = read_back(mould, tmp_path)
     in_wall = [-0.8, 12.0]
     assert not filled(solid, [[*in_wall, mould.fill_z + 0.25]])[0]
@@ -152,12 +157,34 @@ def test_slots_let_the_wire_out_above_the_silicone_only(tmp_path: Path) -> None:
 
 
 def test_slot_does_not_open_into_a_dart(tmp_path: Path) -> None:
-    mould = casting_mould(PIECES["sharp dart"], material=MATERIAL, exits=[(27.0, 20.0)])
+    mould = casting_mould(PIECES["sharp dart"], material=MATERIAL, pads=[pad_at(27.0, 20.0)])
     plain = casting_mould(PIECES["sharp dart"], material=MATERIAL)
     solid = read_back(mould, tmp_path)
     dart_wall = [[30.0, y, mould.fill_z + 0.25] for y in (16.0, 20.0, 24.0)]
     assert filled(solid, dart_wall).all()
     assert solid.volume < read_back(plain, tmp_path).volume - 0.2
+
+
+def test_a_lip_gives_way_to_a_slot(tmp_path: Path) -> None:
+    lips = [np.array([[0.0, 0.0], [40.0, 0.0]])]
+    whole = casting_mould(PIECES["rectangle"], material=MATERIAL, lips=lips)
+    mould = casting_mould(PIECES["rectangle"], material=MATERIAL, lips=lips, pads=[pad_at(12.0, 3.0)])
+    solid = read_back(mould, tmp_path)
+    assert solid.is_watertight and mould.cavity_ml == pytest.approx(2.0, rel=1e-4)
+    # 1.2 mm of slot and a wall of 1.6 mm either side of it: that much of the 4 x 0.5 mm lip is wall instead.
+    assert (whole.lip_ml - mould.lip_ml) * 1000 == pytest.approx((1.2 + 2 * 1.6) * 4 * 0.5, rel=0.01)
+    heights = (mould.fill_z - 0.2, mould.fill_z + 0.25)
+    along = [[[12.0, y, z] for y in (-0.5, -2.0, -4.8)] for z in heights]
+    assert filled(solid, along[0]).all() and not filled(solid, along[1]).any()
+    assert filled(solid, [[12.0 + dx, -2.0, heights[0]] for dx in (-1.4, 1.4)]).all()
+    assert not filled(solid, [[12.0 + dx, -2.0, heights[0]] for dx in (-2.6, 2.6)]).any()
+    (slot,) = mould.wire_slots
+    np.testing.assert_allclose([slot.at, slot.out], [[12, 0], [12, -5.6]], atol=1e-3)
+
+
+def test_outer_size() -> None:
+    # 40 x 20 piece, wall 1.6 and plate 6 on either side; floor 1.6, silicone 2.5, 0.5 above it.
+    assert casting_mould(PIECES["rectangle"], material=MATERIAL).size_mm == (55.2, 35.2, 4.6)
 
 
 def test_wall_fills_a_dart_and_a_thin_one_is_named(tmp_path: Path) -> None:
