@@ -53,6 +53,18 @@ def summarise(program: Program, printer: Printer, *, lines: int) -> Summary:
     return Summary(lines, print_time(program, printer), program.ink, (low, high), arcs)
 
 
+def primed(program: Program) -> float:
+    """The most ink that is pushed beyond what is laid at any time, mm^3: what the cartridge needs besides `Program.ink`.
+
+    Examples
+    --------
+    >>> primed(Program("P1", (Prime(0.2, 1.0), Retract(0.2, 1.0), Prime(0.25, 1.0), Retract(0.25, 1.0))))
+    0.25
+    """
+    pushed = (s.volume if isinstance(s, Prime) else -s.volume for s in program.steps if isinstance(s, Prime | Retract))
+    return max(itertools.accumulate(pushed, initial=0.0))
+
+
 def print_time(program: Program, printer: Printer) -> float:
     """Time from the first step to the last, s; homing is left out.
 

@@ -150,6 +150,8 @@ def _document(args: argparse.Namespace, watch: Stopwatch, progress: Progress) ->
 
 
 def _gcode_facts(written: PieceGcode) -> dict[str, Any]:
+    from gcode.estimate import primed
+
     s = written.summary
     return {
         "file": f"gcode/{written.file.name}",
@@ -158,6 +160,7 @@ def _gcode_facts(written: PieceGcode) -> dict[str, Any]:
         "ink_mm3": s.ink_mm3,
         "bbox_mm": s.bbox_mm,
         "arcs": s.arcs,
+        "primed_mm3": primed(written.plan.program),
     }
 
 

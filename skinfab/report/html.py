@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import re
 from collections.abc import Mapping, Sequence
 from html import escape
 from pathlib import Path
@@ -14,14 +15,19 @@ from skinfab.report.words import count, percent
 
 _MEDIA_TYPES = {".png": "image/png", ".svg": "image/svg+xml"}
 
+#: What may differ between two warnings of one kind: P3, C1, S2; 1.5, -3; and lists of them.
+_NAMES_AND_NUMBERS = re.compile(r"(?:\b[A-Z]\d+\b|[-+]?\d+(?:\.\d+)?)(?:(?:, | and )(?:\b[A-Z]\d+\b|[-+]?\d+(?:\.\d+)?))*")
+
 _STYLE = """
 body { font: 15px/1.45 system-ui, sans-serif; color: #1a1a1a; max-width: 68rem; margin: 2rem auto; padding: 0 1rem; }
 h1 { font-size: 1.6rem; margin-bottom: .2rem; } h2 { font-size: 1.15rem; margin: 2rem 0 .5rem; border-bottom: 1px solid #ccc; }
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; } caption { text-align: left; color: #555; padding-bottom: .3rem; }
 th, td { padding: .2rem .7rem .2rem 0; text-align: left; vertical-align: top; } th { border-bottom: 1px solid #999; font-weight: 600; }
-td.n, th.n { text-align: right; } tr:nth-child(even) td { background: #f6f6f6; }
+td.n, th.n { text-align: right; } td.n { white-space: nowrap; } td { overflow-wrap: anywhere; }
+tr:nth-child(even) td { background: #f6f6f6; }
 figure { margin: 1rem 0; } img { max-width: 100%; } figcaption { color: #555; }
-.warning { background: #fff4d6; border-left: 4px solid #d99a00; padding: .4rem .8rem; margin: .4rem 0; }
+.warning { background: #fff4d6; border-left: 4px solid #d99a00; padding: .1rem .8rem; margin: .4rem 0; }
+.warning p, .warning ul { margin: .3rem 0; } .warning ul { padding-left: 1.2rem; }
 li { margin: .25rem 0; } code { overflow-wrap: anywhere; } .table { overflow-x: auto; }
 @media print { body { margin: 0; max-width: none; } h2 { break-after: avoid; } tr, figure { break-inside: avoid; } }
 """
@@ -54,15 +60,16 @@ def write_html(
         f"<title>Skin for {escape(name)}</title><style>{_STYLE}</style></head><body>",
         f"<h1>Skin for {escape(name)}</h1>",
         _summary(report),
-        *(f'<p class="warning">{escape(warning)}</p>' for warning in report["warnings"]),
+        *_warnings(report["warnings"]),
         *(_figure(caption, Path(picture)) for caption, picture in (pictures or {}).items()),
+        _section("Made for", _made_for(report)),
         _section("Pieces", _pieces(report)),
         _section("Sensors", _sensors(report)),
+        _section("Wires", _wires(report)),
         _section("G-code", _gcode(report)),
         _section("Moulds", _moulds(report)),
         _section("Recipe", _recipe(report["recipe"])),
         _section("Registration: where the G-code's origin lies", _steps(registration)),
-        _section("Provenance", _provenance(report)),
         "</body></html>",
     ]
     atomic_write(path, "\n".join(part for part in parts if part) + "\n")
@@ -78,10 +85,41 @@ def _summary(report: Mapping[str, Any]) -> str:
     )
 
 
+def _warnings(warnings: Sequence[str]) -> list[str]:
+    """A box for each kind of warning: those that differ only in names and numbers stand together."""
+    kinds: dict[str, list[str]] = {}
+    for warning in warnings:
+        kinds.setdefault(_NAMES_AND_NUMBERS.sub("#", warning), []).append(warning)
+    boxes = []
+    for same in kinds.values():
+        text = f"<p>{escape(same[0])}</p>" if len(same) == 1 else "<ul>" + "".join(f"<li>{escape(each)}</li>" for each in same) + "</ul>"
+        boxes.append(f'<div class="warning">{text}</div>')
+    return boxes
+
+
+def _made_for(report: Mapping[str, Any]) -> str:
+    """What the result depends on: whoever prints it checks these first."""
+    made, mesh = report["made_for"], report["mesh"]
+    rows = [
+        ["printer profile", made["printer"]],
+        ["material profile", f"{made['material']} ({made['material_name']})"],
+        ["ink", made["ink"]],
+        ["bead", f"{made['bead_width_mm']:g} mm wide, cross-section {made['bead_area_mm2']:g} mm²"],
+        ["skin", f"{made['skin_thickness_mm']:g} mm thick"],
+        ["object", f"{mesh['file']}, read in {mesh['units']}" + (f", times {made['scale']:g} to mm" if made["scale"] != 1 else "")],
+        ["SHA-256 of the object's file", mesh["sha256"]],
+        ["bound on each piece's mean d", f"{made['max_distortion']:g}"],
+        ["seed", str(made["seed"])],
+        ["software", made["software"]],
+    ]
+    return _table(["", "value"], rows)
+
+
 def _pieces(report: Mapping[str, Any]) -> str:
     rows = [
         [
             p["id"],
+            " x ".join(f"{side:.1f}" for side in p["size_mm"]),
             f"{p['n_faces']:,}",
             f"{p['area_mm2']:.1f}",
             f"{p['boundary_mm']:.1f}",
@@ -91,18 +129,31 @@ def _pieces(report: Mapping[str, Any]) -> str:
         ]
         for p in report["pieces"]
     ]
-    head = ["piece", "#faces", "#area, mm²", "#outline, mm", "#d mean", "#d 95 %", "#d 99 %", "#d max", "#flipped", "#overlap, mm²"]
+    head = [
+        "piece",
+        "#size, mm",
+        "#faces",
+        "#area, mm²",
+        "#outline, mm",
+        "#d mean",
+        "#d 95 %",
+        "#d 99 %",
+        "#d max",
+        "#flipped",
+        "#overlap, mm²",
+    ]
     return _table(head, rows, "Areas and outlines are those of the flat pieces.")
 
 
 def _sensors(report: Mapping[str, Any]) -> str:
+    alike = _alike([s["params"] for s in report["sensors"]])
     rows = [
         [
             str(s["channel"]),
             s["id"],
             s["kind"],
             s["piece"],
-            ", ".join(f"{key} = {_parameter(value)}" for key, value in s["params"].items()),
+            _parameters({key: value for key, value in s["params"].items() if key not in alike}),
             f"{s['length_mm']:.1f}",
             f"{s['ink_mm3']:.1f}",
             f"{s['resistance_kohm']['median']:.0f} ({s['resistance_kohm']['low']:.0f} to {s['resistance_kohm']['high']:.0f})",
@@ -111,11 +162,28 @@ def _sensors(report: Mapping[str, Any]) -> str:
         for s in report["sensors"]
     ]
     head = ["#channel", "sensor", "kind", "piece", "parameters, mm", "#length, mm", "#ink, mm³", "#resistance, kΩ", "#wrap strain, %"]
-    return _table(head, rows, "Resistance: median, and the interval of nine prints in ten. Wrap strain: mean / largest, from flat to worn.")
+    note = "Resistance: median, and the interval of nine prints in ten. Wrap strain: mean / largest, from flat to worn."
+    return _table(head, rows, f"{note} All sensors: {_parameters(alike)}." if alike else note)
 
 
-def _parameter(value: float | bool) -> str:
-    return ("no", "yes")[value] if isinstance(value, bool) else f"{value:g}"
+def _alike(params: Sequence[Mapping[str, float | bool]]) -> dict[str, float | bool]:
+    """The parameters that all of several sensors have with the same value: they are said once."""
+    return {key: value for key, value in params[0].items() if all(p.get(key) == value for p in params)} if len(params) > 1 else {}
+
+
+def _parameters(values: Mapping[str, float | bool]) -> str:
+    return ", ".join(f"{key} = {('no', 'yes')[v] if isinstance(v, bool) else f'{v:g}'}" for key, v in values.items())
+
+
+def _wires(report: Mapping[str, Any]) -> str:
+    """Which wire comes from where and goes where."""
+    rows = [
+        [f"{s['id']}-{k}", s["id"], str(k), s["piece"], f"{x:.1f}", f"{y:.1f}", str(s["channel"])]
+        for s in report["sensors"]
+        for k, (x, y) in enumerate(s["terminals_mm"], start=1)
+    ]
+    head = ["wire", "sensor", "#terminal", "piece", "#x, mm", "#y, mm", "#channel"]
+    return _table(head, rows, "Label each wire as you pierce it into its pad. x and y count from the piece's origin, the + in the picture.")
 
 
 def _gcode(report: Mapping[str, Any]) -> str:
@@ -123,13 +191,26 @@ def _gcode(report: Mapping[str, Any]) -> str:
     for g in report["gcode"]:
         low, high = g["bbox_mm"]
         box = ", ".join(f"{axis} {a:.1f} … {b:.1f}" for axis, a, b in zip("XYZ", low, high, strict=False))
-        rows.append([g["file"], f"{g['lines']:,}", str(g["arcs"]), f"{g['time_s'] / 60:.1f}", f"{g['ink_mm3']:.1f}", box])
-    return _table(["file", "#lines", "#arcs", "#time, min", "#ink, mm³", "extent on the bed, mm"], rows)
+        primed = f"{g['primed_mm3']:.1f}" if "primed_mm3" in g else "not known"
+        rows.append([g["file"], f"{g['lines']:,}", str(g["arcs"]), f"{g['time_s'] / 60:.1f}", f"{g['ink_mm3']:.1f}", primed, box])
+    head = ["file", "#lines", "#arcs", "#time, min", "#ink laid, mm³", "#in the nozzle, mm³", "extent on the bed, mm"]
+    # What one file draws back, the next one pushes again.
+    load = sum(g["ink_mm3"] for g in report["gcode"]) + max((g.get("primed_mm3", 0.0) for g in report["gcode"]), default=0.0)
+    note = f"Load {load:.0f} mm³ of ink and what your needle and hose hold: that dead volume is in no profile."
+    return _table(head, rows, note)
 
 
 def _moulds(report: Mapping[str, Any]) -> str:
-    rows = [[m["file"], "yes" if m["watertight"] else "NO", f"{m['cavity_ml']:.2f}"] for m in report["moulds"]]
-    return _table(["file", "watertight", "#cavity, ml"], rows)
+    rows = [
+        [
+            m["file"],
+            " x ".join(f"{side:.1f}" for side in m["size_mm"]) if "size_mm" in m else "not known",
+            "yes" if m["watertight"] else "NO",
+            f"{m['cavity_ml']:.2f}",
+        ]
+        for m in report["moulds"]
+    ]
+    return _table(["file", "#outer size, mm", "watertight", "#cavity, ml"], rows)
 
 
 def _recipe(recipe: Mapping[str, Any]) -> str:
@@ -143,16 +224,6 @@ def _recipe(recipe: Mapping[str, Any]) -> str:
     words = ", ".join(f"{escape(key.replace('_', ' '))}: {escape(str(value))}" for key, value in rest.items())
     parts = [_steps(recipe.get("steps", ())), _table(["layer", "component", "#weigh, g"], rows), f"<p>{words}</p>" if words else ""]
     return "\n".join(part for part in parts if part)
-
-
-def _provenance(report: Mapping[str, Any]) -> str:
-    mesh = report["mesh"]
-    # The page is written before the run is over: its total and its memory are not known yet.
-    phases = ", ".join(f"{escape(name)} {seconds:.2f}" for name, seconds in report["timing_s"].items() if name != "total")
-    return (
-        f"<p>Made from {escape(mesh['file'])}, read in {escape(mesh['units'])}, SHA-256 <code>{escape(mesh['sha256'])}</code>. "
-        f"Seconds: {phases}.</p>"
-    )
 
 
 def _section(title: str, body: str) -> str:

@@ -9,12 +9,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gcode.estimate import print_time, summarise
+from gcode.estimate import primed, print_time, summarise
 from gcode.geometry import Curve, Straight
 from gcode.marlin import emit, with_chords
 from gcode.plan import Plan
 from gcode.printer import Printer, load_printer
-from gcode.program import Dwell, Extrude, Prime, Program, Travel
+from gcode.program import Dwell, Extrude, Prime, Program, Retract, Travel
 
 A = 500.0
 
@@ -102,3 +102,11 @@ def test_the_box_holds_the_arcs_bulge(printer: Printer) -> None:
     steps = (Travel(z=10.0, speed=5.0), Travel(x=10.0, y=10.0, speed=5.0), Travel(z=1.6, speed=5.0), half, line)
     assert summarise(Program("P1", steps), printer, lines=0).bbox_mm == ((10.0, 10.0, 1.6), (22.0, 15.0, 1.6))
     assert summarise(Program("P1", ()), printer, lines=0).bbox_mm == ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+
+
+def test_primed_is_the_most_that_is_pushed_beyond_what_is_laid() -> None:
+    first = (Prime(25.0, 1.0), Prime(25.0, 1.0))  # at the cleaning place, never drawn back
+    to = Travel(x=0.0, y=0.0, speed=1.0)
+    pattern = (to, Prime(0.2, 1.0), Extrude(Straight((0.0, 0.0), (9.0, 0.0)), 4.0, 5.0), Retract(0.2, 1.0))
+    assert primed(Program("P1", (*first, *pattern, *pattern))) == pytest.approx(50.2)
+    assert primed(Program("P1", ())) == 0.0
