@@ -33,9 +33,7 @@ li { margin: .25rem 0; } code { overflow-wrap: anywhere; } .table { overflow-x: 
 """
 
 
-def write_html(
-    report: Mapping[str, Any], path: str | Path, *, pictures: Mapping[str, Path] | None = None, registration: Sequence[str] = ()
-) -> None:
+def write_html(report: Mapping[str, Any], path: str | Path, *, pictures: Mapping[str, Path] | None = None) -> None:
     """Write the report for people.
 
     Parameters
@@ -45,8 +43,6 @@ def write_html(
     path : path
     pictures : mapping of caption to path, optional
         PNG or SVG files; they go into the page itself.
-    registration : sequence of str
-        How to find the G-code's origin on the mould, a step each.
 
     Raises
     ------
@@ -68,8 +64,8 @@ def write_html(
         _section("Wires", _wires(report)),
         _section("G-code", _gcode(report)),
         _section("Moulds", _moulds(report)),
-        _section("Recipe", _recipe(report["recipe"])),
-        _section("Registration: where the G-code's origin lies", _steps(registration)),
+        _section("Recipe: what to weigh", _recipe(report["recipe"])),
+        _section("Order of work", _steps(report["recipe"].get("steps", ()))),
         "</body></html>",
     ]
     atomic_write(path, "\n".join(part for part in parts if part) + "\n")
@@ -112,7 +108,7 @@ def _made_for(report: Mapping[str, Any]) -> str:
         ["seed", str(made["seed"])],
         ["software", made["software"]],
     ]
-    return _table(["", "value"], rows)
+    return _table(["setting", "value"], rows)
 
 
 def _pieces(report: Mapping[str, Any]) -> str:
@@ -214,16 +210,21 @@ def _moulds(report: Mapping[str, Any]) -> str:
 
 
 def _recipe(recipe: Mapping[str, Any]) -> str:
-    """The steps as a list, what to weigh as a table; whatever else the recipe holds by its name."""
-    rows = [
-        [batch["layer"], component, f"{grams:.2f}"]
-        for batch in recipe.get("batches", [])
-        for component, grams in {**batch["weigh_g"], "together": batch["mass_g"]}.items()
-    ]
+    """What to weigh for each piece and for all; whatever else the recipe holds by its name."""
+    tables = []
+    for batch in recipe.get("batches", []):
+        names = list(batch["weigh_g"])
+        mixes = {**batch["portions"], "all together": batch}
+        rows = [
+            [name, *(f"{mix['weigh_g'][part]:.2f}" for part in names), f"{mix['mass_g']:.2f}", f"{batch['pour_g'].get(name, poured):.2f}"]
+            for poured in (sum(batch["pour_g"].values()),)
+            for name, mix in mixes.items()
+        ]
+        caption = f"The {batch['layer']} layer, {batch['depth']:g} mm, in g: weigh from left to right."
+        tables.append(_table(["piece", *(f"#{part}" for part in names), "#mixed", "#of it poured"], rows, caption))
     rest = {key: value for key, value in recipe.items() if key not in ("batches", "steps")}
     words = ", ".join(f"{escape(key.replace('_', ' '))}: {escape(str(value))}" for key, value in rest.items())
-    parts = [_steps(recipe.get("steps", ())), _table(["layer", "component", "#weigh, g"], rows), f"<p>{words}</p>" if words else ""]
-    return "\n".join(part for part in parts if part)
+    return "\n".join([*tables, f"<p>{words}</p>"] if words else tables)
 
 
 def _section(title: str, body: str) -> str:

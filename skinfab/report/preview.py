@@ -130,10 +130,10 @@ def _draw_sheet(axes: Axes, skin: Skin) -> None:
         # Behind the pads, where the wires will be.
         pads = (sensor.path.start + sensor.path.end) / 2
         behind = pads - (sensor.pattern.pad + 2.0) * np.array([np.cos(sensor.angle), np.sin(sensor.angle)])
-        sheet.label([sensor.id], near=behind + names[sensor.piece], of=pads + names[sensor.piece], size=8, colour="white", box="black")
+        sheet.label([sensor.id], near=behind + names[sensor.piece], of=pads + names[sensor.piece], size=9, colour="white", box="black")
     for piece, offset in zip(skin.pieces, offsets, strict=True):
         width, height = piece.size
-        sheet.label([f"{piece.id}  {width:.0f} x {height:.0f}", piece.id], near=offset, of=offset, size=8, colour="black", box="white")
+        sheet.label([f"{piece.id}  {width:.0f} x {height:.0f}", piece.id], near=offset, of=offset, size=9, colour="black", box="white")
 
 
 class _Sheet:
