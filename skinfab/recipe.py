@@ -1,4 +1,4 @@
-"""The recipe: what to weigh and in which order to do it, from the moulds' volumes and the material profile.
+"""The recipe: what to weigh for each piece and for all, from the moulds' volumes and the material profile.
 
 The process is that of "Soft Sensing Skins for Arbitrary Objects", section II.C; the numbers are the profile's.
 """
@@ -16,8 +16,24 @@ from skinfab.material import Layer, Material
 
 
 @dataclass(frozen=True)
+class Portion:
+    """One layer's mix for one mould.
+
+    Parameters
+    ----------
+    mass_g : float
+        What is mixed, the waste allowance included.
+    weigh_g : dict
+        Grams of each component of the base, then of each additive, in the order to add them.
+    """
+
+    mass_g: float
+    weigh_g: dict[str, float]
+
+
+@dataclass(frozen=True)
 class Batch:
-    """One layer's mix for all moulds together.
+    """One layer's silicone, for all moulds together and for each.
 
     Parameters
     ----------
@@ -31,6 +47,8 @@ class Batch:
         Grams of each component of the base, then of each additive, in the order to add them.
     pour_g : dict
         Grams to pour into each piece's mould, waste left out.
+    portions : dict of Portion
+        What to mix for each piece alone; together they are the whole.
     """
 
     layer: str
@@ -39,23 +57,23 @@ class Batch:
     mass_g: float
     weigh_g: dict[str, float]
     pour_g: dict[str, float]
+    portions: dict[str, Portion]
 
 
 @dataclass(frozen=True)
 class Recipe:
-    """What to weigh, and the steps in words for the person at the printer."""
+    """What to weigh; `skinfab.work_order` says when."""
 
     material: str
     waste_percent: float
     cure_h: float
     bond: str
     batches: tuple[Batch, ...]
-    steps: tuple[str, ...]
 
     def as_dict(self) -> dict[str, Any]:
         """Plain values for ``report.json``."""
         plain = asdict(self)
-        return plain | {"batches": list(plain["batches"]), "steps": list(plain["steps"])}
+        return plain | {"batches": list(plain["batches"])}
 
 
 def recipe(cavities_ml: Mapping[str, float], material: Material, *, lips_ml: Mapping[str, float] | None = None) -> Recipe:
@@ -97,41 +115,20 @@ def recipe(cavities_ml: Mapping[str, float], material: Material, *, lips_ml: Map
     for piece, extra in (lips_ml or {}).items():
         volumes[-1][piece] += float(extra)
     batches = tuple(_batch(layer, each, material) for layer, each in zip(material.layers, volumes, strict=True))
-    return Recipe(material.name, material.waste_percent, material.cure_h, material.bond, batches, _steps(batches, material))
+    return Recipe(material.name, material.waste_percent, material.cure_h, material.bond, batches)
 
 
 def _batch(layer: Layer, volumes: Mapping[str, float], material: Material) -> Batch:
-    parts = sum(layer.base.values())
-    if not parts > 0:
+    if not sum(layer.base.values()) > 0:
         raise InputError(f"layer {layer.name!r} of the material has no base to weigh; give its parts in the profile")
-    volume = sum(volumes.values())
-    mass = volume * layer.density_g_ml * (1 + material.waste_percent / 100)
+    pour = {piece: each * layer.density_g_ml for piece, each in volumes.items()}
+    portions = {piece: _portion(layer, grams * (1 + material.waste_percent / 100)) for piece, grams in pour.items()}
+    whole = _portion(layer, sum(portion.mass_g for portion in portions.values()))
+    return Batch(layer.name, layer.depth, sum(volumes.values()), whole.mass_g, whole.weigh_g, pour, portions)
+
+
+def _portion(layer: Layer, mass: float) -> Portion:
+    parts = sum(layer.base.values())
     base = mass / (1 + sum(layer.additives_wt_percent.values()) / 100)
     weigh = {name: base * part / parts for name, part in layer.base.items()}
-    weigh |= {name: base * percent / 100 for name, percent in layer.additives_wt_percent.items()}
-    pour = {piece: each * layer.density_g_ml for piece, each in volumes.items()}
-    return Batch(layer.name, layer.depth, volume, mass, weigh, pour)
-
-
-def _steps(batches: tuple[Batch, ...], material: Material) -> tuple[str, ...]:
-    moulds = "mould" if len(batches[0].pour_g) == 1 else "moulds"
-    steps = [f"Print the {moulds}; lay each on the level bed, its lower left L mark towards the printer's origin."]
-    height = 0.0
-    for batch in batches:
-        height += batch.depth
-        weigh = ", then ".join(f"{grams:.2f} g {name}" for name, grams in batch.weigh_g.items())
-        pour = ", ".join(f"{grams:.2f} g into {piece}" for piece, grams in batch.pour_g.items())
-        steps += [
-            f"Mix the {batch.layer} layer, {batch.mass_g:.2f} g with {material.waste_percent:g} % for waste: {weigh}. "
-            "Stir, then degas under vacuum.",
-            f"Pour the {batch.layer} layer ({batch.depth:g} mm): {pour}. "
-            f"Spread it until it is level, {height:g} mm above the mould's floor.",
-        ]
-    steps += [
-        f"Print the conductors ({material.ink.name}) into the filled mould with the G-code of the same name: "
-        "home XY, jog the nozzle to the lower left L mark, set Z on the glass.",
-        f"Cure for {material.cure_h:g} h without moving the mould, then take the skin out.",
-        f"Pierce a stripped wire into each contact pad and lead it out by its slot; seal each with a drop of {material.bond}.",
-        f"Wrap the skin round the object, seam by seam; lay each lip over its other side and bond it with {material.bond}.",
-    ]
-    return tuple(steps)
+    return Portion(mass, weigh | {name: base * percent / 100 for name, percent in layer.additives_wt_percent.items()})

@@ -57,23 +57,13 @@ def test_lips_are_filled_by_the_top_layer_alone() -> None:
     assert lipped.batches[1].pour_g == pytest.approx({"P1": 2 * 1.07, "P2": 0.9 * 1.07})
 
 
-def test_steps_are_in_order_and_carry_the_numbers() -> None:
-    steps = recipe({"P1": 10.0, "P2": 2.5}, MATERIAL).steps
-    order = [
-        "Print the moulds",
-        "Mix the reservoir",
-        "Pour the reservoir",
-        "Mix the filler",
-        "Pour the filler",
-        "Print the conductors",
-        "Cure for 12 h",
-        "Pierce",
-        "Wrap",
-    ]
-    assert [step[: len(word)] for step, word in zip(steps, order, strict=True)] == order
-    assert "8.56 g into P1, 2.14 g into P2" in steps[2] and "2 mm above the mould's floor" in steps[2]
-    assert "2.5 mm above the mould's floor" in steps[4]
-    assert "5.97 g Ecoflex 00-30 A" in steps[1] and "FAST Ecoflex 00-35" in steps[-1]
+def test_portions_are_the_whole() -> None:
+    for batch in recipe({"P1": 10.0, "P2": 2.5}, MATERIAL, lips_ml={"P1": 0.3}).batches:
+        assert list(batch.portions) == ["P1", "P2"]
+        for name, grams in batch.weigh_g.items():
+            assert sum(portion.weigh_g[name] for portion in batch.portions.values()) == pytest.approx(grams)
+        for piece, portion in batch.portions.items():
+            assert portion.mass_g == pytest.approx(batch.pour_g[piece] * 1.15) == pytest.approx(sum(portion.weigh_g.values()))
 
 
 def test_as_dict_is_plain_json() -> None:

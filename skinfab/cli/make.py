@@ -74,7 +74,6 @@ def _make(args: argparse.Namespace, folder: Path, watch: Stopwatch, progress: Pr
     from skinfab.document import save_skin
     from skinfab.mould import can_be_cast
     from skinfab.progress import peak_rss_mb
-    from skinfab.recipe import recipe
     from skinfab.report.build import build_report, write_report
 
     start = _document if args.mesh.suffix.lower() == ".skin" else _cut_mesh
@@ -105,13 +104,13 @@ def _make(args: argparse.Namespace, folder: Path, watch: Stopwatch, progress: Pr
         distortions,
         material=used.material,
         gcode=[_gcode_facts(w) for w in printed],
-        moulds=[{"file": f"mould/{m.piece}.stl", "watertight": m.watertight, "cavity_ml": m.cavity_ml} for m in moulds],
-        recipe=recipe({m.piece: m.cavity_ml for m in moulds}, used.material, lips_ml={m.piece: m.lip_ml for m in moulds}).as_dict(),
+        moulds=[_mould_facts(m) for m in moulds],
+        recipe=_recipe(moulds, printed, used),
         timing_s=watch.timing_s(),
         peak_rss_mb=peak_rss_mb(),
         warnings=[*notes, *warnings, *remarks, *(flaw for m in moulds for flaw in m.warnings), *uncast],
     )
-    _write_pictures(skin, distortions, report, _registration(moulds, printed, used), folder)
+    _write_pictures(skin, distortions, report, folder)
     # The pictures take a while, and the report says how long all of it took.
     report |= {"timing_s": watch.timing_s(), "peak_rss_mb": peak_rss_mb()}
     write_report(report, folder / "report.json")
@@ -185,20 +184,35 @@ def _write_drawings(skin: Skin, folder: Path) -> None:
     write_flat_obj(skin.mesh, skin.pieces, sheet_offsets(skin.pieces), folder / "flat.obj")
 
 
-def _registration(moulds: list[CastingMould], printed: Sequence[PieceGcode], used: steps.Profiles) -> list[str]:
-    """How to bring mould and printer together, a step each."""
-    from skinfab.report.registration import MouldPlace, registration_steps
+def _mould_facts(mould: CastingMould) -> dict[str, Any]:
+    return {
+        "file": f"mould/{mould.piece}.stl",
+        "watertight": mould.watertight,
+        "cavity_ml": mould.cavity_ml,
+        "size_mm": mould.size_mm,
+        "wire_slots": [{"sensor": s.sensor, "terminal": s.terminal, "at_mm": s.at, "shared": s.shared} for s in mould.wire_slots],
+    }
+
+
+def _recipe(moulds: list[CastingMould], printed: Sequence[PieceGcode], used: steps.Profiles) -> dict[str, Any]:
+    """What to weigh, and what to do in which order."""
+    from skinfab.recipe import recipe
+    from skinfab.work_order import PrintJob, work_steps
 
     by_piece = {mould.piece: mould for mould in moulds}
-    places = [MouldPlace(w.piece, f"gcode/{w.file.name}", by_piece[w.piece].marks + w.plan.offset) for w in printed]
-    # The program counts its heights from the floor of the cavity, which lies above the glass.
-    return registration_steps(places, home=used.printer.home, glass_z=-used.material.mould.floor)
+    weighed = recipe({m.piece: m.cavity_ml for m in moulds}, used.material, lips_ml={m.piece: m.lip_ml for m in moulds})
+    jobs = [
+        PrintJob(w.piece, f"gcode/{w.file.name}", mould.wire_slots, mould.marks + w.plan.offset, w.summary.time_s)
+        for w in printed
+        for mould in (by_piece[w.piece],)
+    ]
+    return weighed.as_dict() | {"steps": work_steps(weighed, used.material, jobs=jobs, home=used.printer.home)}
 
 
-def _write_pictures(skin: Skin, distortions: list[Distortion], report: dict[str, Any], registration: list[str], folder: Path) -> None:
+def _write_pictures(skin: Skin, distortions: list[Distortion], report: dict[str, Any], folder: Path) -> None:
     from skinfab.report.html import write_html
     from skinfab.report.preview import draw_preview
 
     draw_preview(skin, distortions, report, folder / "preview.png")
     pictures = {"The skin at a glance": folder / "preview.png", "The flat pieces, to scale": folder / "flat.svg"}
-    write_html(report, folder / "report.html", pictures=pictures, registration=registration)
+    write_html(report, folder / "report.html", pictures=pictures)

@@ -1,4 +1,4 @@
-"""`skinfab mould SKIN -o DIR`: a casting mould for each flat piece, and the recipe to fill them."""
+"""`skinfab mould SKIN -o DIR`: a casting mould for each flat piece, and the order of work."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     p = subparsers.add_parser(
         "mould",
         help="casting moulds for the flat pieces",
-        description="Write one printable mould (binary STL, mm) for each flat piece into DIR and print the recipe to fill them.",
+        description="Write one printable mould (binary STL, mm) for each flat piece into DIR and print what to weigh and to do, in order.",
     )
     p.add_argument("skin", metavar="SKIN", type=Path, help="the skin document")
     p.add_argument("-o", "--output", metavar="DIR", type=Path, required=True, help="folder for PIECE.stl; made if missing")
@@ -27,6 +27,7 @@ def run(args: argparse.Namespace) -> int:
     from skinfab.material import load_material
     from skinfab.mould import skin_moulds, write_mould
     from skinfab.recipe import recipe
+    from skinfab.work_order import PrintJob, work_steps
 
     skin = load_skin(args.skin)
     if not skin.pieces:
@@ -48,6 +49,8 @@ def run(args: argparse.Namespace) -> int:
         for warning in mould.warnings:
             print(f"warning: {warning}", file=sys.stderr)
     print()
-    for number, step in enumerate(weighed.steps, start=1):
+    printed = {sensor.piece for sensor in skin.sensors}
+    jobs = [PrintJob(m.piece, f"{m.piece}.gcode", m.wire_slots) for m in moulds if m.piece in printed]
+    for number, step in enumerate(work_steps(weighed, material, jobs=jobs), start=1):
         print(f"{number}. {step}")
     return 0

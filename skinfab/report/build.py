@@ -55,7 +55,8 @@ def build_report(
         file, lines, time_s, ink_mm3, bbox_mm ((2, 2) or (2, 3)), arcs; and, where it is known, primed_mm3:
         the most ink that is in the nozzle beside what is laid.
     moulds : sequence of mappings
-        file, watertight, cavity_ml; and, where it is known, size_mm: the outer size in x, y, z.
+        file, watertight, cavity_ml; and, where they are known, size_mm: the outer size in x, y, z; wire_slots: which pad's wire
+        leaves where (sensor, terminal, at_mm in the piece frame, shared).
     recipe : mapping, optional
     timing_s : mapping
         Seconds of each phase, and "total".

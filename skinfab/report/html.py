@@ -172,13 +172,18 @@ def _parameters(values: Mapping[str, float | bool]) -> str:
 
 
 def _wires(report: Mapping[str, Any]) -> str:
-    """Which wire comes from where and goes where."""
+    """Which wire comes from where, leaves the mould where, and goes where."""
+    slots = {
+        (slot["sensor"], slot["terminal"]): ", ".join(f"{each:.1f}" for each in slot["at_mm"]) + (" (shared)" if slot["shared"] else "")
+        for mould in report["moulds"]
+        for slot in mould.get("wire_slots", [])
+    }
     rows = [
-        [f"{s['id']}-{k}", s["id"], str(k), s["piece"], f"{x:.1f}", f"{y:.1f}", str(s["channel"])]
+        [f"{s['id']}-{k}", s["id"], str(k), s["piece"], f"{x:.1f}, {y:.1f}", slots.get((s["id"], k), "not known"), str(s["channel"])]
         for s in report["sensors"]
         for k, (x, y) in enumerate(s["terminals_mm"], start=1)
     ]
-    head = ["wire", "sensor", "#terminal", "piece", "#x, mm", "#y, mm", "#channel"]
+    head = ["wire", "sensor", "#terminal", "piece", "#pad at x, y, mm", "#slot at x, y, mm", "#channel"]
     return _table(head, rows, "Label each wire as you pierce it into its pad. x and y count from the piece's origin, the + in the picture.")
 
 
@@ -214,14 +219,13 @@ def _recipe(recipe: Mapping[str, Any]) -> str:
     tables = []
     for batch in recipe.get("batches", []):
         names = list(batch["weigh_g"])
-        mixes = {**batch["portions"], "all together": batch}
+        mixes = [(piece, portion, batch["pour_g"][piece]) for piece, portion in batch["portions"].items()]
+        mixes += [("all together", batch, sum(batch["pour_g"].values()))]
         rows = [
-            [name, *(f"{mix['weigh_g'][part]:.2f}" for part in names), f"{mix['mass_g']:.2f}", f"{batch['pour_g'].get(name, poured):.2f}"]
-            for poured in (sum(batch["pour_g"].values()),)
-            for name, mix in mixes.items()
+            [who, *(f"{mix['weigh_g'][name]:.2f}" for name in names), f"{mix['mass_g']:.2f}", f"{poured:.2f}"] for who, mix, poured in mixes
         ]
         caption = f"The {batch['layer']} layer, {batch['depth']:g} mm, in g: weigh from left to right."
-        tables.append(_table(["piece", *(f"#{part}" for part in names), "#mixed", "#of it poured"], rows, caption))
+        tables.append(_table(["piece", *(f"#{name}" for name in names), "#mixed", "#of it poured"], rows, caption))
     rest = {key: value for key, value in recipe.items() if key not in ("batches", "steps")}
     words = ", ".join(f"{escape(key.replace('_', ' '))}: {escape(str(value))}" for key, value in rest.items())
     return "\n".join([*tables, f"<p>{words}</p>"] if words else tables)

@@ -48,7 +48,8 @@ def test_one_stl_a_piece_and_the_recipe(skin: Skin, tmp_path: Path, capsys: pyte
     assert sorted(p.name for p in (tmp_path / "out" / "moulds").iterdir()) == ["P1.stl", "P2.stl"]
     assert trimesh.load_mesh(tmp_path / "out" / "moulds" / "P1.stl").is_watertight
     assert "holds 8.00 ml" in out and "holds 1.50 ml" in out  # 3200 and 600 mm^2, 2.5 mm deep
-    assert "6.85 g into P1" in out and "9. Wrap" in out  # 6.4 ml of reservoir at 1.07 g/ml
+    assert "Pour 6.85 g" in out  # 6.4 ml of reservoir at 1.07 g/ml
+    assert "P2 has no sensors and is only cast" in out and "S1-1 by (0.0, " in out and "10. Wrap" in out
 
     from skinfab.material import load_material
     from skinfab.mould import casting_mould

@@ -51,13 +51,13 @@ def page_of(skin: Skin, distortions: list[Distortion], folder: Path, **changes: 
         material=load_material(),
         gcode=[{"file": "gcode/P1.gcode", "lines": 1234, "time_s": 90.0, "ink_mm3": 160.0, "bbox_mm": [[0, 0], [99.5, 2]], "arcs": 9}],
         moulds=[{"file": "mould/P1.stl", "watertight": True, "cavity_ml": 30.0}],
-        recipe=recipe({"P1": 30.0}, load_material()).as_dict(),
+        recipe=recipe({"P1": 30.0}, load_material()).as_dict() | {"steps": ["Home X & Y.", "Jog."]},
         timing_s=TIMING,
         peak_rss_mb=200.0,
         warnings=["<b>thin</b> & bent"],
     )
     (folder / "p.png").write_bytes(PNG)
-    write_html(report | changes, folder / "report.html", pictures={"The <skin>": folder / "p.png"}, registration=["Home X & Y.", "Jog."])
+    write_html(report | changes, folder / "report.html", pictures={"The <skin>": folder / "p.png"})
     return Page((folder / "report.html").read_text(encoding="utf-8"))
 
 
@@ -79,14 +79,27 @@ def test_well_formed_and_complete(skin: Skin, distortions: list[Distortion], tmp
     ]:
         assert word in page.text
     titles = re.findall(r"<h2>([^<]+)</h2>", (tmp_path / "report.html").read_text())
-    assert [title for title in titles if title not in ("Recipe", "Registration: where the G-code&#x27;s origin lies")] == [
+    assert titles == [
         "Made for",
         "Pieces",
         "Sensors",
         "Wires",
         "G-code",
         "Moulds",
+        "Recipe: what to weigh",
+        "Order of work",
     ]
+    assert page.text.count("Home X & Y.") == 1
+
+
+def test_amounts_per_piece_and_together(skin: Skin, distortions: list[Distortion], tmp_path: Path) -> None:
+    weighed = recipe({"P1": 10.0, "P2": 2.5}, load_material())
+    page_of(skin, distortions, tmp_path, recipe=weighed.as_dict())
+    first, second, whole = rows_of(tmp_path, "Recipe: what to weigh")[:3]
+    # 8 and 2 ml of reservoir at 1.07 g/ml; 15 % more is mixed, of which A is 1/1.03/2.
+    assert (first[0], first[1], first[-2:]) == ("P1", "4.78", ["9.84", "8.56"])
+    assert (second[0], second[-2:]) == ("P2", ["2.46", "2.14"])
+    assert (whole[0], whole[-2:]) == ("all together", ["12.30", "10.70"])
 
 
 def test_every_row_is_as_wide_as_its_heading(skin: Skin, distortions: list[Distortion], tmp_path: Path) -> None:
@@ -121,10 +134,16 @@ def test_it_says_what_it_was_made_for(skin: Skin, distortions: list[Distortion],
 
 
 def test_two_wires_a_sensor(skin: Skin, distortions: list[Distortion], tmp_path: Path) -> None:
-    page_of(skin, distortions, tmp_path)
-    rows = rows_of(tmp_path, "Wires")
-    assert rows[:2] == [["S1-1", "S1", "1", "P1", "90.0", "20.0", "0"], ["S1-2", "S1", "2", "P1", "90.0", "26.0", "0"]]
-    assert [row[0] for row in rows[2:]] == ["C1-1", "C1-2"] and {row[-1] for row in rows[2:]} == {"1"}
+    slots = [
+        {"sensor": "S1", "terminal": 1, "at_mm": [88.04, 0], "shared": False},
+        {"sensor": "S1", "terminal": 2, "at_mm": [91.0, 0], "shared": True},
+    ]
+    mould = {"file": "mould/P1.stl", "watertight": True, "cavity_ml": 30.0, "wire_slots": slots}
+    page_of(skin, distortions, tmp_path, moulds=[mould])
+    first, second, *rest = rows_of(tmp_path, "Wires")
+    assert first == ["S1-1", "S1", "1", "P1", "90.0, 20.0", "88.0, 0.0", "0"]
+    assert second == ["S1-2", "S1", "2", "P1", "90.0, 26.0", "91.0, 0.0 (shared)", "0"]
+    assert [(row[0], row[5], row[6]) for row in rest] == [("C1-1", "not known", "1"), ("C1-2", "not known", "1")]
 
 
 def test_sizes_and_ink_where_they_are_known(skin: Skin, distortions: list[Distortion], tmp_path: Path) -> None:
