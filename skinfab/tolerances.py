@@ -93,3 +93,7 @@ CAUTION_D_P99 = 4.5
 
 #: A sensor with more wrap strain than this anywhere is warned of: its resistance there is off by a fifth.
 CAUTION_WRAP_STRAIN = 0.10
+
+#: A sensor is asked for at a point no farther from the surface than this fraction of the object's diagonal: points read off a
+#: screen or a drawing miss by less, and those of another scale, unit or origin by far more.
+POINT_FRACTION = 0.05

@@ -10,29 +10,24 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from skinfab.errors import InputError
 from skinfab.material import Material
 from skinfab.mesh.model import Mesh
-from skinfab.patterns.base import Pattern
 from skinfab.patterns.contact_spiral import ContactSpiral
 from skinfab.patterns.registry import PATTERNS
 from skinfab.patterns.strain_lines import StrainLines
 from skinfab.pieces import Piece
+from skinfab.placement.fill import Region, fill, regions_of
 from skinfab.placement.finger import is_finger, place_strain, strain_sizes
-from skinfab.placement.raster import Raster
-from skinfab.placement.search import Footprint, Poses, Space, first_fit, need_of, nudged_fit, poses_in
 from skinfab.placement.sensor import Sensor
+from skinfab.placement.share import CHANNELS, default_number, share
+from skinfab.placement.space import Footprint, Space, need_of
 
 #: Sizes of the paper's contact sensors, table II, mm.
 SEED_SIZES = (45.0, 38.0, 32.0, 22.0, 20.0, 15.0, 10.0)
-#: A second sensor beside another is at least this large, mm: smaller ones are for places where nothing else fits.
-_FILL_SIZE = 15.0
-#: Channels of the paper's readout: two 16-channel multiplexers.
-CHANNELS = 32
-#: Terminals point in so many directions, evenly spread from the direction of the piece's longest edge on.
-_DIRECTIONS = 24
+#: Of these, a second sensor beside another is at least this large, mm: smaller ones are for places where nothing else fits.
+_BESIDE_SIZE = 15.0
 
 
 @dataclass(frozen=True)
@@ -45,13 +40,14 @@ class AutoOptions:
         Kinds of pattern it may use.
     sizes : tuple of float, mm
         Outer diameters of contact spirals, in any order.
-    per_piece : int
+    per_piece : int, optional
         At most so many contact sensors on a piece; but a piece with more faces between creases gets one on each.
+        Without it `share.default_number` decides, and there are no more than the readout has channels.
     """
 
     kinds: tuple[str, ...] = (ContactSpiral.kind, StrainLines.kind)
     sizes: tuple[float, ...] = SEED_SIZES
-    per_piece: int = 4
+    per_piece: int | None = None
 
     def __post_init__(self) -> None:
         for kind in self.kinds:
@@ -59,7 +55,7 @@ class AutoOptions:
                 raise InputError(f"automatic placement knows no kind {kind!r}; there are {', '.join(sorted(PATTERNS))}")
         if not self.sizes or not all(np.isfinite(s) and s > 0 for s in self.sizes):
             raise InputError(f"automatic placement: sizes are {list(self.sizes)}; give one or more diameters above 0 mm")
-        if self.per_piece < 1:
+        if self.per_piece is not None and self.per_piece < 1:
             raise InputError(f"automatic placement: per_piece is {self.per_piece}; it must be at least 1")
 
 
@@ -93,8 +89,8 @@ def place(
     """Place sensors on every piece; the same input and seed give the same sensors.
 
     A finger (`finger.is_finger`) gets one strain sensor across its middle; then every piece gets contact
-    spirals, as large as fit: one on each face between creases, up to ``options.per_piece`` where there are
-    fewer faces. Creases count for nothing on a piece where otherwise nothing fits.
+    spirals, as large as fit: one on each face between creases, and more by area where there are fewer faces
+    than ``options.per_piece``. Creases count for nothing on a piece where otherwise nothing fits.
 
     Parameters
     ----------
@@ -112,7 +108,7 @@ def place(
     sensors : tuple of Sensor
         Ids "C1".. and "S1".., channels counted from 0.
     warnings : list of str
-        Pieces that stay without a sensor and why; channels beyond the readout's.
+        Pieces that stay without a sensor and why; fewer sensors than asked for; channels beyond the readout's.
     """
     options = options or AutoOptions()
     rng = np.random.default_rng(seed)
@@ -122,11 +118,7 @@ def place(
     if StrainLines.kind in options.kinds and is_finger(mesh):
         _strain(mesh, spaces, namer, warnings, material=material, rng=rng)
     if ContactSpiral.kind in options.kinds:
-        spirals = [spiral_of_size(s, material) for s in sorted(set(options.sizes), reverse=True)]
-        for space in spaces:
-            _contacts(space, spirals, namer, options.per_piece, rng)
-            if not space.sensors:
-                warnings.append(_why_empty(space, spirals[-1]))
+        _contacts(spaces, namer, warnings, options=options, material=material, rng=rng)
     if len(namer.sensors) > CHANNELS:
         warnings.append(f"{len(namer.sensors)} sensors need more than the {CHANNELS} channels of two 16-channel multiplexer boards")
     return tuple(namer.sensors), warnings
@@ -162,110 +154,102 @@ def _strain(
     namer.add(next(s for s in spaces if s.piece.id == sensor.piece), sensor)
 
 
-def _contacts(space: Space, spirals: Sequence[ContactSpiral], namer: Namer, per_piece: int, rng: np.random.Generator) -> None:
-    """Fill the faces between creases; where that gives nothing, the piece as a whole."""
-    for raster, between_creases in ((space.facets, True), (space.raster, False)) if len(space.creases) else ((space.raster, False),):
-        count, label = raster.regions()
-        smallest = Footprint.of(spirals[-1])
-        least = smallest.reach + need_of(spirals[-1], space.material) - raster.step
-        room = np.array([raster.clearance[label == k].max(initial=0.0) for k in range(1, count + 1)])
-        wide = [k + 1 for k in np.argsort(-room, kind="stable") if room[k] >= least]
-        if not wide:
-            continue
-        placed = 0
-        for k in wide:
-            region = Region(space, raster, label == k, between_creases)
-            placed += _fill(region, spirals, namer, max(per_piece // len(wide), 1), rng)
-        if placed:
-            return
+def _contacts(
+    spaces: Sequence[Space],
+    namer: Namer,
+    warnings: list[str],
+    *,
+    options: AutoOptions,
+    material: Material,
+    rng: np.random.Generator,
+) -> None:
+    """Contact spirals on all pieces."""
+    spirals = [spiral_of_size(s, material) for s in sorted(set(options.sizes), reverse=True)]
+    beside = _BESIDE_SIZE if options.sizes == SEED_SIZES else 0.0
+    regions = [_regions(space, spirals[-1]) for space in spaces]
+    limits = _limits(spaces, regions, options.per_piece, CHANNELS - len(namer.sensors))
+    placed = []
+    for space, parts, limit in zip(spaces, regions, limits, strict=True):
+        placed.append(_fill_piece(parts, spirals, namer, limit, rng, beside=beside))
+        if not placed[-1] and limit and parts and parts[0].between_creases:
+            across = regions_of(space, spirals[-1], between_creases=False)
+            placed[-1] = _fill_piece(across, spirals, namer, limit, rng, beside=beside)
+    empty = [space for space in spaces if not space.sensors]
+    left_out = [space for space, limit in zip(spaces, limits, strict=True) if not space.sensors and not limit]
+    warnings += no_room([space for space in empty if space not in left_out], spirals[-1])
+    warnings += _no_channel(left_out)
+    if options.per_piece is not None:
+        few = [f"{n} on {s.piece.id}" for s, n in zip(spaces, placed, strict=True) if n < options.per_piece and s not in empty]
+        if few:
+            warnings.append(f"fewer contact sensors fit than the {options.per_piece} that per_piece asks for: {_listed(few)}")
 
 
-def _fill(region: Region, spirals: Sequence[ContactSpiral], namer: Namer, limit: int, rng: np.random.Generator) -> int:
-    """Spirals from the largest down: spread out where as large ones fit so, else packed from one end."""
-    found = _series(region, spirals, limit, rng, packed=False)
-    if 1 < limit:
-        packed = _series(region, spirals, limit, rng, packed=True)
-        if _covered(packed) > _covered(found):
-            found = packed
-    for sensor in found:
-        namer.add(region.space, sensor)
-    return len(found)
+def _regions(space: Space, smallest: ContactSpiral) -> list[Region]:
+    """Faces between creases with room for the smallest spiral; without any, the piece as a whole."""
+    between = regions_of(space, smallest, between_creases=True) if len(space.creases) else []
+    return between or regions_of(space, smallest, between_creases=False)
 
 
-def _series(region: Region, spirals: Sequence[ContactSpiral], limit: int, rng: np.random.Generator, *, packed: bool) -> list[Sensor]:
-    """One sensor after the other on a copy of the region, up to `limit`."""
-    found: list[Sensor] = []
-    trial = _copy(region) if limit > 1 else region
-    k = 0
-    while k < len(spirals) and len(found) < limit:
-        sensor = None if found and spirals[k].s < _FILL_SIZE else best_in(trial, spirals[k], rng, packed=packed)
-        if sensor is None:
-            k += 1
-            continue
-        found.append(dataclasses.replace(sensor, id=f"trial {len(found)}"))
-        if limit > 1:
-            trial.space.add(found[-1])
-    return found
+def _limits(spaces: Sequence[Space], regions: Sequence[Sequence[Region]], per_piece: int | None, channels: int) -> list[int]:
+    """How many contact sensors each piece may have."""
+    if per_piece is not None:
+        return [max(per_piece, len(parts)) for parts in regions]
+    limits = [default_number(space.piece.area, len(parts)) if parts else 0 for space, parts in zip(spaces, regions, strict=True)]
+    if sum(limits) > channels:
+        # Pieces without room keep no channel from the others, and are told apart from those left out for want of one.
+        shared = share([space.piece.area for space in spaces], most=max(channels, 0), caps=limits)
+        return [int(n) if parts else 1 for n, parts in zip(shared, regions, strict=True)]
+    return [limit or 1 for limit in limits]
 
 
-def _covered(sensors: Sequence[Sensor]) -> float:
-    """Area of their discs, but for the factor pi/4, mm^2."""
-    return float(sum(s.pattern.s**2 for s in sensors if isinstance(s.pattern, ContactSpiral)))
+def _fill_piece(
+    regions: Sequence[Region], spirals: Sequence[ContactSpiral], namer: Namer, limit: int, rng: np.random.Generator, *, beside: float
+) -> int:
+    """Fill the parts of a piece, each with its share; what one has no room for goes to the others."""
+    placed, roomy = 0, []
+    for region, most in zip(regions, share([r.area for r in regions], most=limit), strict=True):
+        sensors = fill(region, spirals, int(most), rng, beside=beside) if most else []
+        for sensor in sensors:
+            namer.add(region.space, sensor)
+        placed += len(sensors)
+        if most and len(sensors) == most:
+            roomy.append(region)
+    large = [s for s in spirals if s.s >= beside]
+    for region in roomy:
+        if placed < limit and len(large):
+            sensors = fill(region, large, limit - placed, rng, beside=beside)
+            for sensor in sensors:
+                namer.add(region.space, sensor)
+            placed += len(sensors)
+    return placed
 
 
-@dataclass(frozen=True, eq=False)
-class Region:
-    """A part of a piece that is filled by itself."""
-
-    space: Space
-    raster: Raster
-    cells: NDArray[np.bool_]
-    between_creases: bool
-
-
-def _copy(region: Region) -> Region:
-    """The same region on a copy of its piece, to try on."""
-    space = Space(region.space.mesh, region.space.piece, region.space.material, list(region.space.sensors))
-    # Share what does not change; the two rasters are made anew from the sensors.
-    for name in ("edges", "locator", "creases", "main_direction"):
-        setattr(space, name, getattr(region.space, name))
-    return Region(space, space.facets if region.between_creases else space.raster, region.cells, region.between_creases)
+def no_room(spaces: Sequence[Space], smallest: ContactSpiral) -> list[str]:
+    """One warning for all pieces that are too small for the smallest sensor."""
+    if not spaces:
+        return []
+    material = spaces[0].material
+    needed = 2 * (Footprint.of(smallest).radius + need_of(smallest, material))
+    widest = sorted({round(2 * float(space.raster.clearance.max(initial=0.0)), 1) for space in spaces})
+    across = f"{widest[0]:.1f} to {widest[-1]:.1f}" if len(widest) > 1 else f"{widest[0]:.1f}"
+    its = "its largest inscribed circle is" if len(spaces) == 1 else "their largest inscribed circles are"
+    return [f"{_pieces(spaces)} no sensor: {its} {across} mm across, and the smallest sensor (s = {smallest.s:g} mm) needs {needed:.1f} mm"]
 
 
-def best_in(region: Region, pattern: Pattern, rng: np.random.Generator, *, packed: bool) -> Sensor | None:
-    """Where a pattern fits in a region: in the roomiest place, or `packed` towards one end; None where it does not fit."""
-    footprint = Footprint.of(pattern)
-    turns = region.space.main_direction + np.arange(_DIRECTIONS) * 2 * np.pi / _DIRECTIONS
-    poses = poses_in(region.raster, region.cells, footprint, turns, need=need_of(pattern, region.space.material), rng=rng)
-    if not len(poses.slack):
-        return None
-    space, between_creases = region.space, region.between_creases
-    roomiest = np.argsort(-np.round(poses.slack, 2), kind="stable")
-    for order in (_from_one_end(region, poses), roomiest) if packed else (roomiest,):
-        sensor = first_fit(space, pattern, footprint, poses, order, between_creases=between_creases)
-        if sensor:
-            return sensor
-    return nudged_fit(space, pattern, footprint, poses, int(roomiest[0]), between_creases=between_creases)
+def _no_channel(spaces: Sequence[Space]) -> list[str]:
+    if not spaces:
+        return []
+    return [
+        f"{_pieces(spaces)} no sensor: all {CHANNELS} channels of two 16-channel multiplexer boards are taken by larger pieces; "
+        "per_piece in the [auto] table of a --sensors file asks for more"
+    ]
 
 
-def _from_one_end(region: Region, poses: Poses) -> NDArray[np.int64]:
-    """Poses with some room to spare, those nearest to one end of the region first."""
-    ok = np.flatnonzero(poses.slack >= region.raster.step / 2)
-    if not len(ok):
-        return ok
-    places = region.raster.centres(region.cells)
-    middle = places.mean(axis=0)
-    _, axes = np.linalg.eigh(np.cov((places - middle).T))
-    from_end, across = ((poses.places[ok] - middle) @ axes[:, ::-1]).T
-    # Whole millimetres, so that the second direction has a say too.
-    return ok[np.lexsort((-poses.slack[ok], np.round(across), np.round(from_end)))]
+def _pieces(spaces: Sequence[Space]) -> str:
+    """ "piece P3 has", "pieces P3 and P4 have"."""
+    ids = [space.piece.id for space in spaces]
+    return f"piece {ids[0]} has" if len(ids) == 1 else f"pieces {_listed(ids)} have"
 
 
-def _why_empty(space: Space, smallest: ContactSpiral) -> str:
-    raster = space.raster
-    needed = 2 * (Footprint.of(smallest).radius + need_of(smallest, space.material))
-    widest = 2 * raster.clearance.max(initial=0.0)
-    return (
-        f"piece {space.piece.id} has no sensor: its largest inscribed circle is {widest:.1f} mm across, "
-        f"and the smallest sensor (s = {smallest.s:g} mm) fits into one of {needed:.1f} mm"
-    )
+def _listed(words: Sequence[str]) -> str:
+    return ", ".join(words[:-1]) + " and " + words[-1] if len(words) > 1 else words[0]

@@ -13,6 +13,7 @@ import numpy as np
 from skinfab.errors import RefusedError
 from skinfab.material import Material
 from skinfab.paths import Path
+from skinfab.patterns.base import Pattern
 from skinfab.pieces import Piece
 from skinfab.placement.distance import Curves, distance, self_distance
 from skinfab.placement.locate import Locator
@@ -42,10 +43,13 @@ class Finding:
         "C1 is 0.6 mm outside piece P2".
     amount : float, mm
         By how much; infinite for what is wrong altogether.
+    sensor : str
+        Id of the sensor to be moved; "" where moving does not help.
     """
 
     text: str
     amount: float
+    sensor: str = ""
 
 
 def edge_curves(piece: Piece) -> Curves:
@@ -72,29 +76,43 @@ def check_sensor(piece: Piece, sensor: Sensor, others: Iterable[Sensor], *, mate
 
 def find_faults(piece: Piece, sensor: Sensor, others: Iterable[Sensor], *, material: Material) -> list[Finding]:
     """As `check_sensor`, with amounts."""
-    found = find_misfits(piece, sensor, others, material=material, edges=edge_curves(piece), locator=Locator(piece.UV, piece.F))
-    need = material.gap + sensor.pattern.bead
-    lack = need - own_clearance(sensor, need=need)
-    if lack > CLEARANCE_MM:
-        found.append(Finding(f"{sensor.id} is {_mm(lack)} mm too close to itself", lack))
-    return found
+    return _Checker(material).faults(piece, sensor, others)
 
 
-def find_misfits(
-    piece: Piece, sensor: Sensor, others: Iterable[Sensor], *, material: Material, edges: Curves, locator: Locator
-) -> list[Finding]:
-    """What is wrong with where a sensor lies; `edges` and `locator` of the piece are made once for many sensors."""
-    curves = Curves.of_segments(sensor.printed_path.segments)
-    bead = sensor.pattern.bead
-    found = list(_containment(piece, sensor, curves, edges, material.margin, locator))
-    for other in others:
-        if other.piece != piece.id or other.id == sensor.id:
-            continue
-        apart = distance(curves, Curves.of_segments(other.printed_path.segments))
-        lack = material.gap + (bead + other.pattern.bead) / 2 - apart
+class _Checker:
+    """Keeps what many sensors have in common: a piece's edges and triangles, a pattern's clearance to itself."""
+
+    def __init__(self, material: Material) -> None:
+        self._material = material
+        self._pieces: dict[str, tuple[Curves, Locator]] = {}
+        self._own: dict[Pattern, float] = {}
+
+    def faults(self, piece: Piece, sensor: Sensor, others: Iterable[Sensor]) -> list[Finding]:
+        if piece.id not in self._pieces:
+            self._pieces[piece.id] = edge_curves(piece), Locator(piece.UV, piece.F)
+        edges, locator = self._pieces[piece.id]
+        found = self._misfits(piece, sensor, others, edges=edges, locator=locator)
+        need = self._material.gap + sensor.pattern.bead
+        if sensor.pattern not in self._own:
+            self._own[sensor.pattern] = own_clearance(sensor, need=need)
+        lack = need - self._own[sensor.pattern]
         if lack > CLEARANCE_MM:
-            found.append(Finding(f"{sensor.id} is {_mm(lack)} mm too close to {other.id}", lack))
-    return found
+            found.append(Finding(f"{sensor.id} is {_mm(lack)} mm too close to itself", lack, sensor.id))
+        return found
+
+    def _misfits(self, piece: Piece, sensor: Sensor, others: Iterable[Sensor], *, edges: Curves, locator: Locator) -> list[Finding]:
+        """What is wrong with where a sensor lies."""
+        curves = Curves.of_segments(sensor.printed_path.segments)
+        bead = sensor.pattern.bead
+        found = list(_containment(piece, sensor, curves, edges, self._material.margin, locator))
+        for other in others:
+            if other.piece != piece.id or other.id == sensor.id:
+                continue
+            need = self._material.gap + (bead + other.pattern.bead) / 2
+            lack = need - distance(curves, Curves.of_segments(other.printed_path.segments))
+            if lack > CLEARANCE_MM:
+                found.append(Finding(f"{sensor.id} is {_mm(lack)} mm too close to {other.id}", lack, sensor.id))
+        return found
 
 
 def own_clearance(sensor: Sensor, *, need: float) -> float:
@@ -124,25 +142,29 @@ def validate(skin: PlacedSensors, material: Material) -> None:
         Something is wrong; the worst of it is named.
     """
     found: list[Finding] = []
+    checker = _Checker(material)
     pieces = {p.id: p for p in skin.pieces}
     for what, used in (("id", Counter(s.id for s in skin.sensors)), ("channel", Counter(str(s.channel) for s in skin.sensors))):
         found += [Finding(f"{what} {value} is used by more than one sensor", math.inf) for value, n in used.items() if n > 1]
     for k, sensor in enumerate(skin.sensors):
         if sensor.piece not in pieces:
-            found.append(Finding(f"{sensor.id} is on piece {sensor.piece}, which does not exist", math.inf))
+            there = ", ".join(pieces)
+            found.append(Finding(f"{sensor.id} is on piece {sensor.piece}, which does not exist; there are {there}", math.inf))
             continue
         # Each pair of sensors once.
-        found += find_faults(pieces[sensor.piece], sensor, skin.sensors[:k], material=material)
+        found += checker.faults(pieces[sensor.piece], sensor, skin.sensors[:k])
     if found:
         raise RefusedError(describe(found))
 
 
 def describe(found: Sequence[Finding]) -> str:
-    """One sentence that names the worst findings first."""
+    """One sentence that names the worst findings first and what to do."""
     worst = sorted(found, key=lambda f: -f.amount)
     rest = len(worst) - _NAMED
     more = f"; and {rest} more" if rest > 0 else ""
-    return "; ".join(f.text for f in worst[:_NAMED]) + more + "; move, turn or shrink them"
+    movable = {f.sensor for f in found if f.sensor}
+    advice = f"; move, turn or shrink {'it' if len(movable) == 1 else 'them'}" if movable else ""
+    return "; ".join(f.text for f in worst[:_NAMED]) + more + advice
 
 
 def _containment(piece: Piece, sensor: Sensor, curves: Curves, edges: Curves, margin: float, locator: Locator) -> Iterable[Finding]:
@@ -155,16 +177,16 @@ def _containment(piece: Piece, sensor: Sensor, curves: Curves, edges: Curves, ma
         return
     if inside and apart >= bead / 2:
         where = f"{_mm(lack)} mm too close to the edge of piece {piece.id}"
-        yield Finding(f"{sensor.id} is {where} ({apart - bead / 2:.2f} mm from bead to edge, {margin:g} mm is the margin)", lack)
+        yield Finding(f"{sensor.id} is {where} ({apart - bead / 2:.2f} mm from bead to edge, {margin:g} mm is the margin)", lack, sensor.id)
         return
-    outside = _overhang(sensor.printed_path, edges, locator)
-    if outside > 0:
-        yield Finding(f"{sensor.id} is {_mm(outside + bead / 2)} mm outside piece {piece.id}", outside + bead / 2)
-    elif apart <= CLEARANCE_MM:
-        # Both sides of the edge are piece: a closed dart, or a fold of no width.
-        yield Finding(f"{sensor.id} crosses an edge of piece {piece.id} (a dart or a slit)", bead / 2 + margin)
+    beyond = _overhang(sensor.printed_path, edges, locator)
+    outside = (beyond if beyond > 0 else -apart) + bead / 2
+    if beyond > 0 or apart > CLEARANCE_MM:
+        spans = " x ".join(f"{_short(low)} to {_short(high)}" for low, high in zip(piece.UV.min(axis=0), piece.UV.max(axis=0), strict=True))
+        yield Finding(f"{sensor.id} is {_mm(outside)} mm outside piece {piece.id}, which spans {spans} mm", outside, sensor.id)
     else:
-        yield Finding(f"{sensor.id} is {_mm(bead / 2 - apart)} mm outside piece {piece.id}", bead / 2 - apart)
+        # Both sides of the edge are piece: a closed dart, or a fold of no width.
+        yield Finding(f"{sensor.id} crosses an edge of piece {piece.id} (a dart or a slit)", bead / 2 + margin, sensor.id)
 
 
 def _overhang(path: Path, edges: Curves, locator: Locator) -> float:
@@ -182,3 +204,8 @@ def _overhang(path: Path, edges: Curves, locator: Locator) -> float:
 def _mm(amount: float) -> str:
     """One decimal; two where it would read 0.0 or hide what is wrong."""
     return f"{amount:.1f}" if amount >= 0.1 else f"{max(amount, 0.001):.3f}"
+
+
+def _short(length: float) -> str:
+    """At most one decimal: 12.5, 60, 0."""
+    return f"{round(length, 1) + 0.0:g}"

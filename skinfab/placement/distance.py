@@ -72,6 +72,10 @@ class Curves:
         """The curves of those indices, in that order."""
         return Curves(*(getattr(self, name)[index] for name in self.__dataclass_fields__))
 
+    def within(self, low: Array, high: Array) -> Curves:
+        """Those whose box meets the box from `low` to `high`, (2,) mm each."""
+        return self.take(np.flatnonzero(((self.high >= low) & (self.low <= high)).all(axis=1)))
+
     def moved(self, *, angle: float, shift: ArrayLike) -> Curves:
         """Turned about the origin by `angle` rad, then moved by `shift` mm: as ``Path.transformed``, for many tries."""
         c, s = np.cos(angle), np.sin(angle)

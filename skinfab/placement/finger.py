@@ -11,8 +11,9 @@ from skinfab.errors import InputError
 from skinfab.material import Material
 from skinfab.mesh.model import Mesh
 from skinfab.patterns.strain_lines import StrainLines
-from skinfab.placement.search import Footprint, Poses, Space, first_fit, need_of, poses_around
+from skinfab.placement.search import Poses, first_fit, poses_around
 from skinfab.placement.sensor import Sensor
+from skinfab.placement.space import Footprint, Space, need_of
 from skinfab.placement.wrap_strain import unflattening
 
 Array = NDArray[np.float64]

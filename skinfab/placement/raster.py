@@ -5,6 +5,8 @@ Only for looking for places; what is found is verified exactly by `check`.
 
 from __future__ import annotations
 
+import copy
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
@@ -12,6 +14,9 @@ from scipy import ndimage
 from skinfab.tolerances import RASTER_CELLS, RASTER_STEP_MM
 
 Array = NDArray[np.float64]
+
+#: About so many points of a shape are looked at before all the others.
+_FEW = 12
 
 
 class Raster:
@@ -44,23 +49,44 @@ class Raster:
         self.block_lines(creases)
         self._clearance: Array | None = None
 
+    def copy(self) -> Raster:
+        """One to try things on."""
+        twin = copy.copy(self)
+        twin.free = self.free.copy()
+        return twin
+
     def block_lines(self, lines: Array) -> None:
         """Take out the cells that lines (n, 2, 2) mm run through."""
         if not len(lines):
             return
-        count = np.ceil(np.hypot(*(lines[:, 1] - lines[:, 0]).T) / (self.step / 2)).astype(int) + 1
-        which = np.repeat(np.arange(len(lines)), count)
-        along = (np.arange(len(which)) - np.repeat(np.cumsum(count) - count, count)) / np.repeat(count, count)
-        points = lines[which, 0] * (1 - along[:, None]) + lines[which, 1] * along[:, None]
-        row, column = self._cells(np.vstack([points, lines[:, 1]]))
-        self.free[row, column] = False
+        self.free[self._crossed(lines)] = False
         self._clearance = None
 
     def block_polygon(self, polygon: Array) -> None:
         """Take out all cells inside a polygon (k, 2) mm and on its rim."""
         edges = np.stack([polygon, np.roll(polygon, -1, axis=0)], axis=1)
-        self.free &= ~_inside((edges - self._origin) / self.step, self.free.shape)
-        self.block_lines(edges)
+        blocked = _inside((edges - self._origin) / self.step, self.free.shape)
+        blocked[self._crossed(edges)] = True
+        self.free &= ~blocked
+        if self._clearance is not None:
+            self._clearance = self._nearer(self._clearance, blocked)
+
+    def _nearer(self, clearance: Array, blocked: NDArray[np.bool_]) -> Array:
+        """The clearance with further cells blocked: nothing changes farther from them than the clearance is anywhere."""
+        reach = int(np.ceil(clearance.max() / self.step)) + 1
+        rows, columns = np.flatnonzero(blocked.any(axis=1)), np.flatnonzero(blocked.any(axis=0))
+        near = (slice(max(rows[0] - reach, 0), rows[-1] + reach + 1), slice(max(columns[0] - reach, 0), columns[-1] + reach + 1))
+        changed = clearance.copy()
+        changed[near] = np.minimum(clearance[near], ndimage.distance_transform_edt(~blocked[near]) * self.step)
+        return changed
+
+    def _crossed(self, lines: Array) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """Rows and columns of the cells that lines run through."""
+        count = np.ceil(np.hypot(*(lines[:, 1] - lines[:, 0]).T) / (self.step / 2)).astype(int) + 1
+        which = np.repeat(np.arange(len(lines)), count)
+        along = (np.arange(len(which)) - np.repeat(np.cumsum(count) - count, count)) / np.repeat(count, count)
+        points = lines[which, 0] * (1 - along[:, None]) + lines[which, 1] * along[:, None]
+        return self._cells(np.vstack([points, lines[:, 1]]))
 
     @property
     def clearance(self) -> Array:
@@ -74,6 +100,38 @@ class Raster:
         row, column = self._cells(points)
         return self.clearance[row, column]
 
+    def clearance_round(self, cells: tuple[NDArray[np.int64], NDArray[np.int64]], shapes: Array, *, least: float) -> Array:
+        """Least clearance over the points of shapes that are put on many cells.
+
+        Parameters
+        ----------
+        cells : rows (n,) int and columns (n,) int
+            On whose centres the shapes' origin comes to lie.
+        shapes : (a, k, 2) float, mm
+        least : float, mm
+            What has less is given up early: the answer is then no more than `least`, and no less than right.
+
+        Returns
+        -------
+        (a, n) mm
+        """
+        # From the centre of a cell, a point falls into the same cell relative to it wherever it starts.
+        offset = np.floor(shapes / self.step + 0.5).astype(np.int64)
+        rim = int(np.abs(offset).max())
+        padded = np.pad(self.clearance, rim)
+        width, flat = padded.shape[1], padded.ravel()
+        start = (cells[0] + rim) * width + cells[1] + rim
+        jumps = offset[..., 1] * width + offset[..., 0]
+        # A few points all round settle most cells; the rest is asked for only where these leave it open.
+        few = np.arange(jumps.shape[1]) % max(jumps.shape[1] // _FEW, 1) == 0
+        found = np.empty((len(jumps), len(start)))
+        for jump, least_round in zip(jumps, found, strict=True):
+            least_round[:] = flat[start[:, None] + jump[few]].min(axis=1)
+            open_ = np.flatnonzero(least_round > least)
+            if not few.all():
+                least_round[open_] = np.minimum(least_round[open_], flat[start[open_, None] + jump[~few]].min(axis=1))
+        return found
+
     def regions(self) -> tuple[int, NDArray[np.int32]]:
         """Number of connected parts of free space and each cell's part, 1, 2, ...; 0 where not free."""
         label, count = ndimage.label(self.free)
@@ -82,7 +140,11 @@ class Raster:
     def centres(self, cells: NDArray[np.bool_]) -> Array:
         """Centres of the cells that are set, (n, 2) mm."""
         row, column = np.nonzero(cells)
-        return self._origin + self.step * (np.column_stack([column, row]) + 0.5)
+        return self.centres_of((row, column))
+
+    def centres_of(self, cells: tuple[NDArray[np.int64], NDArray[np.int64]]) -> Array:
+        """Centres of cells given by rows (n,) and columns (n,), (n, 2) mm."""
+        return self._origin + self.step * (np.column_stack([cells[1], cells[0]]) + 0.5)
 
     def _cells(self, points: Array) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         at = np.floor((points - self._origin) / self.step).astype(np.int64)

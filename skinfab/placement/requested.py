@@ -13,17 +13,23 @@ from skinfab.errors import InputError, RefusedError
 from skinfab.material import Material
 from skinfab.mesh.model import Mesh
 from skinfab.patterns.base import Pattern
+from skinfab.patterns.contact_spiral import ContactSpiral
 from skinfab.patterns.strain_lines import StrainLines
 from skinfab.pieces import Piece
-from skinfab.placement.auto import Region, best_in, place
+from skinfab.placement.auto import place
 from skinfab.placement.check import describe, find_faults
+from skinfab.placement.fill import Region, best_in
 from skinfab.placement.finger import is_finger, place_strain
-from skinfab.placement.search import Footprint, Space, need_of, poses_around, sensor_at
+from skinfab.placement.search import poses_around, sensor_at
 from skinfab.placement.sensor import Sensor
 from skinfab.placement.sensors_file import FlatPose, OnObject, Request, read_sensors_file
+from skinfab.placement.space import Footprint, Space, need_of
+from skinfab.tolerances import POINT_FRACTION
 
 #: Directions tried for a sensor at a point of the object.
 _DIRECTIONS = 72
+#: Step in which the largest diameter that fits is named, mm.
+_SIZE_STEP = 0.5
 
 
 def place_from_file(
@@ -52,15 +58,15 @@ def place_from_file(
         space, sensor = _placed(request, mesh, spaces, material, rng)
         faults = find_faults(space.piece, sensor, space.sensors, material=material)
         if faults:
-            raise RefusedError(describe(faults))
+            raise RefusedError(f"{request.where}: {describe(faults)}")
         space.add(sensor)
     if wanted.auto is not None:
         return place(mesh, pieces, material=material, seed=seed, options=wanted.auto, spaces=spaces)
     return tuple(sorted((s for space in spaces for s in space.sensors), key=lambda s: s.channel)), []
 
 
-def nearest_on_pieces(mesh: Mesh, pieces: Sequence[Piece], point: NDArray[np.float64]) -> tuple[int, NDArray[np.float64]]:
-    """Index of the piece and place on it (2,) mm of the surface point nearest to `point` (3,) mm."""
+def nearest_on_pieces(mesh: Mesh, pieces: Sequence[Piece], point: NDArray[np.float64]) -> tuple[int, NDArray[np.float64], float]:
+    """The surface point nearest to `point` (3,) mm: index of its piece, place on that piece (2,) mm, and how far it is, mm."""
     from trimesh.triangles import closest_point, points_to_barycentric
 
     best: tuple[float, int, NDArray[np.float64]] | None = None
@@ -74,7 +80,7 @@ def nearest_on_pieces(mesh: Mesh, pieces: Sequence[Piece], point: NDArray[np.flo
             best = (float(apart[f]), k, weights @ piece.UV[piece.F[f]])
     if best is None:
         raise InputError("there is no piece to put a sensor on")
-    return best[1], best[2]
+    return best[1], best[2], best[0]
 
 
 def _placed(request: Request, mesh: Mesh, spaces: Sequence[Space], material: Material, rng: np.random.Generator) -> tuple[Space, Sensor]:
@@ -82,10 +88,11 @@ def _placed(request: Request, mesh: Mesh, spaces: Sequence[Space], material: Mat
     if isinstance(pose, FlatPose):
         space = next((s for s in spaces if s.piece.id == pose.piece), None)
         if space is None:
-            raise InputError(f"{request.id}: no piece {pose.piece!r}; there are {', '.join(s.piece.id for s in spaces)}")
+            raise InputError(f"{request.where}: no piece {pose.piece!r}; there are {', '.join(s.piece.id for s in spaces)}")
         return space, Sensor(request.id, pose.piece, pattern, pose.x, pose.y, pose.angle, request.channel)
     if isinstance(pose, OnObject):
-        which, place_on_piece = nearest_on_pieces(mesh, [s.piece for s in spaces], np.array(pose.point))
+        which, place_on_piece, away = nearest_on_pieces(mesh, [s.piece for s in spaces], np.array(pose.point))
+        _near_enough(request.where, mesh, away)
         space, footprint = spaces[which], Footprint.of(pattern)
         turns = space.main_direction + np.arange(_DIRECTIONS) * 2 * np.pi / _DIRECTIONS if pose.angle is None else np.array([pose.angle])
         places = np.broadcast_to(place_on_piece, (len(turns), 2))
@@ -98,11 +105,7 @@ def _placed(request: Request, mesh: Mesh, spaces: Sequence[Space], material: Mat
     if found is None:
         found = _anywhere(pattern, spaces, rng)
     if found is None:
-        widest = max((2 * s.raster.clearance.max(initial=0.0) for s in spaces), default=0.0)
-        raise RefusedError(
-            f"{request.id} ({pattern.kind}) fits on no piece: the largest free circle is {widest:.1f} mm across; "
-            "make the sensor smaller or the pieces larger"
-        )
+        raise RefusedError(f"{request.where}: {_too_large(pattern, spaces, rng)}")
     return next(s for s in spaces if s.piece.id == found.piece), _named(found, request)
 
 
@@ -111,10 +114,49 @@ def _anywhere(pattern: Pattern, spaces: Sequence[Space], rng: np.random.Generato
     for between_creases in (True, False):
         rasters = [(space, space.facets if between_creases and len(space.creases) else space.raster) for space in spaces]
         for space, raster in sorted(rasters, key=lambda r: -r[1].clearance.max(initial=0.0)):
-            found = best_in(Region(space, raster, raster.free, between_creases), pattern, rng, packed=False)
+            found = best_in(Region(space, raster.free, between_creases), pattern, rng, packed=False)
             if found:
                 return found
     return None
+
+
+def _near_enough(where: str, mesh: Mesh, away: float) -> None:
+    """Refuse a point far from the object: it is of another scale, unit or origin."""
+    low, high = mesh.V[mesh.F].min(axis=(0, 1)), mesh.V[mesh.F].max(axis=(0, 1))
+    if away > POINT_FRACTION * np.linalg.norm(high - low):
+        spans = ", ".join(f"{name} {a:.4g} to {b:.4g}" for name, a, b in zip("xyz", low, high, strict=True))
+        raise InputError(
+            f"{where}: the point is {away:.3g} mm from the object; coordinates are mm of the object as scaled, which spans {spans}"
+        )
+
+
+def _too_large(pattern: Pattern, spaces: Sequence[Space], rng: np.random.Generator) -> str:
+    """Why a pattern fits on no piece, and the largest of a contact sensor's kind that does."""
+    widest = max((2 * s.raster.clearance.max(initial=0.0) for s in spaces), default=0.0)
+    refusal = f"it fits on no piece, whose largest free circle is {widest:.1f} mm across"
+    if not isinstance(pattern, ContactSpiral):
+        return f"{refusal}; make the sensor smaller or the pieces larger"
+    # Bisection from the smallest that can be drawn: what fits, fits smaller too, but for the odd angle.
+    low = int((4 * pattern.x + pattern.pitch_min) / _SIZE_STEP)
+    high, best = int(min(pattern.s, widest) / _SIZE_STEP) + 1, None
+    while high - low > 1:
+        middle = (low + high) // 2
+        smaller = _shrunk(pattern, middle * _SIZE_STEP)
+        found = _anywhere(smaller, spaces, rng)
+        if found:
+            low, best = middle, (smaller, found.piece)
+        else:
+            high = middle
+    if best is None:
+        return f"{refusal}, and with x = {pattern.x:g}, b = {pattern.b:g} and l = {pattern.l:g} no smaller s fits either"
+    fitting, piece = best
+    return f"{refusal}; the largest that fits with this x and l is s = {fitting.s:g} with n = {fitting.n} and b = {fitting.b:g}, on {piece}"
+
+
+def _shrunk(pattern: ContactSpiral, s: float) -> ContactSpiral:
+    """The same spiral with diameter `s`, and with as many half-turns and as wide a pair of leads as that leaves."""
+    n = min(pattern.n, ContactSpiral.half_turns_max(s=s, x=pattern.x, pitch_min=pattern.pitch_min))
+    return dataclasses.replace(pattern, s=s, n=n, b=min(pattern.b, s - 2 * pattern.x))
 
 
 def _named(sensor: Sensor, request: Request) -> Sensor:

@@ -5,7 +5,7 @@ A list of sensors, each at a place of one's own or wherever it fits, and a table
     [auto]                              # fill the rest; leave the table out for the listed sensors alone
     kinds = ["contact-spiral"]          # what to place: "contact-spiral", "strain-lines"; default both
     sizes = [22, 15]                    # outer diameters of contact spirals, mm; default the paper's
-    per_piece = 2                       # at most so many contact sensors on a piece; default 4
+    per_piece = 2                       # so many contact sensors on each piece where they fit; default by its area
 
     [[sensor]]
     kind = "contact-spiral"
@@ -41,7 +41,7 @@ from typing import Any
 from skinfab.errors import InputError
 from skinfab.material import Material
 from skinfab.patterns.base import Pattern
-from skinfab.patterns.registry import make_pattern
+from skinfab.patterns.registry import PATTERNS, make_pattern
 from skinfab.patterns.strain_lines import StrainLines
 from skinfab.placement.auto import AutoOptions
 
@@ -66,8 +66,9 @@ class OnObject:
 
 @dataclass(frozen=True)
 class Request:
-    """One sensor as the file asks for it; `pose` is None for "auto"."""
+    """One sensor as the file asks for it; `pose` is None for "auto", `where` is "sensor 3 (C2) of FILE"."""
 
+    where: str
     id: str
     channel: int
     pattern: Pattern
@@ -134,7 +135,8 @@ def _requests(tables: Sequence[Mapping[str, Any]], where: str, material: Materia
     channels = [t["channel"] for t in tables if "channel" in t]
     requests = []
     for k, table in enumerate(tables, 1):
-        here = f"{where}, sensor {k}"
+        id = table["id"] if "id" in table else _default_id(table.get("kind"), ids)
+        here = f"sensor {k} ({id}) of {where}" if id and isinstance(id, str) else f"sensor {k} of {where}"
         _known(table, ("id", "channel", "kind", "params", "pose"), here)
         for name in ("kind", "params", "pose"):
             if name not in table:
@@ -147,19 +149,26 @@ def _requests(tables: Sequence[Mapping[str, Any]], where: str, material: Materia
             )
         except InputError as fault:
             raise InputError(f"{here}: {fault}") from fault
-        letter = "S" if isinstance(pattern, StrainLines) else "C"
-        id = table["id"] if "id" in table else _next(ids, lambda n, letter=letter: f"{letter}{n + 1}")
         if not isinstance(id, str) or not id:
             raise InputError(f'{here}: id is {id!r}; it must be a name such as "C1"')
         channel = _count(table["channel"], "channel", here) if "channel" in table else _next(channels, lambda n: n)
         ids.append(id)
         channels.append(channel)
-        requests.append(Request(id, channel, pattern, _pose(table["pose"], here)))
+        requests.append(Request(here, id, channel, pattern, _pose(table["pose"], here)))
     for name, values in (("id", [r.id for r in requests]), ("channel", [str(r.channel) for r in requests])):
-        twice = sorted({v for v in values if values.count(v) > 1})
+        twice = [r.where for r, value in zip(requests, values, strict=True) if values.count(value) > 1]
         if twice:
-            raise InputError(f"{where}: {name} {twice[0]} is used more than once; give each sensor its own")
+            value = next(v for v in values if values.count(v) > 1)
+            raise InputError(f"{twice[1]}: {name} {value} is used more than once; give each sensor its own")
     return tuple(requests)
+
+
+def _default_id(kind: Any, taken: Sequence[Any]) -> str | None:
+    """The next free name of that kind of pattern; None where there is no such kind."""
+    if not isinstance(kind, str) or kind not in PATTERNS:
+        return None
+    letter = "S" if kind == StrainLines.kind else "C"
+    return str(_next(taken, lambda n: f"{letter}{n + 1}"))
 
 
 def _pose(pose: Any, where: str) -> FlatPose | OnObject | None:

@@ -1,6 +1,7 @@
 """The main job on the seven objects, judged from what it wrote."""
 
 import json
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -62,7 +63,8 @@ def test_every_piece_has_a_sensor_or_a_reason(made: tuple[str, Path, dict]) -> N
     _, _, report = made
     with_sensor = {s["piece"] for s in report["sensors"]}
     for piece in report["pieces"]:
-        assert piece["id"] in with_sensor or any(w.startswith(f"piece {piece['id']} has no sensor") for w in report["warnings"])
+        named = [re.search(rf"\b{piece['id']}\b", w.split(" no sensor")[0]) for w in report["warnings"] if " no sensor" in w]
+        assert piece["id"] in with_sensor or any(named)
 
 
 def test_fingers_have_a_strain_sensor(made: tuple[str, Path, dict]) -> None:

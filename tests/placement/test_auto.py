@@ -12,11 +12,11 @@ from skinfab.errors import InputError
 from skinfab.material import load_material
 from skinfab.mesh.model import Mesh
 from skinfab.patterns.contact_spiral import ContactSpiral
-from skinfab.placement import auto
+from skinfab.placement import fill
 from skinfab.placement.auto import SEED_SIZES, AutoOptions, place, spiral_of_size
 from skinfab.placement.check import validate
 from skinfab.placement.distance import Curves, distance
-from skinfab.placement.search import crease_lines
+from skinfab.placement.space import crease_lines
 
 MATERIAL = load_material()
 
@@ -55,7 +55,7 @@ def test_a_tight_fit_is_found_off_the_raster(sheet: Callable, monkeypatch: pytes
     with_nudging, _ = place(mesh, [piece], material=MATERIAL)
     assert sizes(with_nudging) == [20]
     validate(SimpleNamespace(pieces=(piece,), sensors=with_nudging), MATERIAL)
-    monkeypatch.setattr(auto, "nudged_fit", lambda *_, **__: None)
+    monkeypatch.setattr(fill, "nudged_fit", lambda *_, **__: None)
     without, _ = place(mesh, [piece], material=MATERIAL)
     assert sizes(without) == [15]
 
@@ -63,7 +63,7 @@ def test_a_tight_fit_is_found_off_the_raster(sheet: Callable, monkeypatch: pytes
 def test_sensors_spread_over_a_piece_with_room_to_spare(sheet: Callable) -> None:
     mesh, piece = sheet(300, 80, step=10)
     sensors, _ = place(mesh, [piece], material=MATERIAL)
-    assert sizes(sensors) == [45] * 4
+    assert sizes(sensors) == [45] * 6  # 240 cm^2
     along = np.sort([s.path.bbox.mean(axis=0)[0] for s in sensors])
     assert along[0] < 100 and along[-1] > 200  # packed from one end they would all lie on 4 x 60 mm or less
 
@@ -104,7 +104,7 @@ def test_too_small_a_piece_is_named_with_what_would_fit(sheet: Callable) -> None
     (text,) = warnings
     said = re.fullmatch(
         r"piece P1 has no sensor: its largest inscribed circle is (\S+) mm across, "
-        r"and the smallest sensor \(s = 10 mm\) fits into one of (\S+) mm",
+        r"and the smallest sensor \(s = 10 mm\) needs (\S+) mm",
         text,
     )
     assert said and float(said[1]) == pytest.approx(8, abs=0.5) and 15 < float(said[2]) < 25
@@ -115,6 +115,54 @@ def test_more_sensors_than_channels_is_said(sheet: Callable) -> None:
     pieces = [dataclasses.replace(one, id=f"P{k}") for k in range(33)]
     sensors, warnings = place(mesh, pieces, material=MATERIAL, options=AutoOptions(kinds=("contact-spiral",), sizes=(20,), per_piece=1))
     assert len(sensors) == 33 and len(warnings) == 1 and "33 sensors need more than the 32 channels" in warnings[0]
+
+
+def test_small_pieces_share_one_warning(sheet: Callable) -> None:
+    mesh, first = sheet(60, 8, step=2)
+    second = dataclasses.replace(first, id="P2", UV=first.UV * [1, 9 / 8])
+    third = dataclasses.replace(first, id="P3")
+    _, (text,) = place(mesh, [first, second, third], material=MATERIAL, options=AutoOptions(kinds=("contact-spiral",)))
+    said = re.fullmatch(
+        r"pieces P1, P2 and P3 have no sensor: their largest inscribed circles are (\S+) to (\S+) mm across, "
+        r"and the smallest sensor \(s = 10 mm\) needs \S+ mm",
+        text,
+    )
+    assert said and float(said[1]) == pytest.approx(8, abs=0.5) and float(said[2]) == pytest.approx(9, abs=0.5)
+    assert place(mesh, [first, second, third], material=MATERIAL, options=AutoOptions(kinds=("contact-spiral",)))[1] == [text]
+
+
+def test_a_large_piece_is_filled(sheet: Callable) -> None:
+    mesh, piece = sheet(240, 200, step=20)
+    sensors, warnings = place(mesh, [piece], material=MATERIAL)
+    validate(SimpleNamespace(pieces=(piece,), sensors=sensors), MATERIAL)
+    assert sizes(sensors) == [45] * 12 and not warnings  # 480 cm^2
+    middles = np.array([s.path.bbox.mean(axis=0) for s in sensors])
+    for quarter in ((0, 0), (0, 1), (1, 0), (1, 1)):
+        assert (np.floor(middles / [120, 100]) == quarter).all(axis=1).sum() >= 2
+    assert place(mesh, [piece], material=MATERIAL) == (sensors, warnings)
+
+
+def test_no_more_than_the_channels_without_being_asked(sheet: Callable) -> None:
+    mesh, piece = sheet(500, 400, step=50)
+    sensors, warnings = place(mesh, [piece], material=MATERIAL)
+    assert len(sensors) == 32 and not warnings
+    small_mesh, one = sheet(30, 30)
+    pieces = [dataclasses.replace(one, id=f"P{k}") for k in range(1, 35)]
+    sensors, warnings = place(small_mesh, pieces, material=MATERIAL)
+    assert len(sensors) == 32 == len({s.piece for s in sensors})
+    (text,) = warnings
+    assert text.startswith("pieces P33 and P34 have no sensor: all 32 channels") and "per_piece" in text
+
+
+def test_fewer_than_asked_for_is_said(sheet: Callable) -> None:
+    mesh, piece = sheet(60, 100)
+    options = AutoOptions(kinds=("contact-spiral",), sizes=(38,), per_piece=9)
+    sensors, warnings = place(mesh, [piece], material=MATERIAL, options=options)
+    assert 0 < len(sensors) < 9
+    assert warnings == [f"fewer contact sensors fit than the 9 that per_piece asks for: {len(sensors)} on P1"]
+    # Sizes that are asked for are placed beside one another however small.
+    small, warnings = place(mesh, [piece], material=MATERIAL, options=AutoOptions(kinds=("contact-spiral",), sizes=(10,), per_piece=3))
+    assert sizes(small) == [10] * 3 and not warnings
 
 
 @pytest.mark.parametrize("s", SEED_SIZES)

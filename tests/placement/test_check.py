@@ -35,7 +35,7 @@ def test_margin_zero_is_met_exactly_and_a_hair_more_is_not(sheet: Callable) -> N
     no_margin = dataclasses.replace(MATERIAL, margin=0.0)
     assert check_sensor(piece, put(20, lowest - MATERIAL.margin), (), material=no_margin) == []
     (text,) = check_sensor(piece, put(20, lowest - MATERIAL.margin - 0.01), (), material=no_margin)
-    assert text == "C1 is 0.010 mm outside piece P1"
+    assert text == "C1 is 0.010 mm outside piece P1, which spans 0 to 60 x 0 to 60 mm"
 
 
 @pytest.mark.parametrize(
@@ -107,9 +107,43 @@ def test_validate_names_the_worst_first(sheet: Callable) -> None:
     good, off, far = put(20, 30), put(55, 30, id="C2", channel=1), dataclasses.replace(put(0, 0, id="C3", channel=1), piece="P9")
     validate(SimpleNamespace(pieces=(piece,), sensors=(good,)), MATERIAL)
     with pytest.raises(
-        RefusedError, match=r"channel 1 is used by more.*C3 is on piece P9, which does not exist.*C2 is .* outside piece P1"
+        RefusedError, match=r"channel 1 is used by more.*C3 is on piece P9, which does not exist; there are P1.*C2 is .* outside piece P1"
     ):
         validate(SimpleNamespace(pieces=(piece,), sensors=(good, off, far)), MATERIAL)
     many = tuple(put(55, 30, id=f"C{k}", channel=k) for k in range(9))
     with pytest.raises(RefusedError, match=r"and \d+ more"):
         validate(SimpleNamespace(pieces=(piece,), sensors=many), MATERIAL)
+
+
+def test_advice_is_in_the_right_number(sheet: Callable) -> None:
+    _, piece = sheet(60, 60)
+
+    def refusal(*sensors: Sensor) -> str:
+        with pytest.raises(RefusedError) as refused:
+            validate(SimpleNamespace(pieces=(piece,), sensors=sensors), MATERIAL)
+        return str(refused.value)
+
+    off, also = put(55, 30), put(-5, 30, id="C2", channel=1)
+    assert refusal(off).endswith("P1, which spans 0 to 60 x 0 to 60 mm; move, turn or shrink it")
+    assert refusal(off, also).endswith("move, turn or shrink them")
+    # C2 is wrong twice: it lies on C1 and off the piece.
+    assert refusal(put(20, 30), put(50, 30, id="C2", channel=1), put(50, 30, id="C3", channel=2)).endswith("move, turn or shrink them")
+    twice = refusal(put(8, 10), put(48, 48, 3.1, id="C2", channel=0))
+    assert twice == "channel 0 is used by more than one sensor"
+
+
+def test_many_sensors_are_judged_each_by_its_own_piece_and_pattern(sheet: Callable) -> None:
+    # What is kept from one sensor to the next must not leak: the same place on two pieces, two patterns on one.
+    _, large = sheet(60, 60)
+    small = dataclasses.replace(sheet(30, 30)[1], id="P2")
+    dense = StrainLines(l1=30, l2=20, b=3, bead=0.5, gap=0.5)
+    sensors = (
+        put(30, 30),
+        dataclasses.replace(put(30, 30, id="C2", channel=1), piece="P2"),
+        put(10, 50, pattern=dense, id="S1", channel=2),
+    )
+    with pytest.raises(RefusedError) as refused:
+        validate(SimpleNamespace(pieces=(large, small), sensors=sensors), MATERIAL)
+    said = str(refused.value).split("; ")
+    assert [s.split(" mm ", 1)[1] for s in said[:2]] == ["outside piece P2, which spans 0 to 30 x 0 to 30 mm", "too close to itself"]
+    assert said[2:] == ["move, turn or shrink them"]

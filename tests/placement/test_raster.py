@@ -40,3 +40,37 @@ def test_large_pieces_get_coarser_cells(sheet: Callable) -> None:
     _, piece = sheet(400, 400, step=20)
     raster = Raster(boundary(piece), np.zeros((0, 2, 2)))
     assert raster.free.size < 400_000 and 0.5 < raster.step < 0.8
+
+
+def test_blocking_later_is_as_blocking_at_once(sheet: Callable) -> None:
+    _, piece = sheet(90, 60)
+    edges = boundary(piece)
+    polygons = [
+        np.array([[10.0, 10], [30, 12], [20, 33]]),
+        np.array([[70.0, 5], [85, 5], [85, 50], [60, 40]]),
+        np.array([[40.0, 40], [41, 70], [30, 50]]),
+    ]
+    later, at_once = Raster(edges, np.zeros((0, 2, 2))), Raster(edges, np.zeros((0, 2, 2)))
+    twin = later.copy()
+    untouched = later.clearance.copy()
+    for polygon in polygons:
+        assert later.clearance.max() > 0  # known before, so that it is brought up to date
+        later.block_polygon(polygon)
+        at_once.block_polygon(polygon)
+    np.testing.assert_array_equal(later.free, at_once.free)
+    np.testing.assert_allclose(later.clearance, at_once.clearance, atol=1e-12)
+    np.testing.assert_array_equal(twin.clearance, untouched)
+
+
+def test_clearance_round_a_shape_is_the_least_at_its_points(sheet: Callable) -> None:
+    _, piece = sheet(60, 60, without=lambda c: (np.abs(c - [20, 30]) < 6).all(axis=1), step=2)
+    raster = Raster(boundary(piece), np.zeros((0, 2, 2)))
+    rng = np.random.default_rng(3)
+    row, column = np.nonzero(raster.free)
+    some = rng.choice(len(row), 400, replace=False)
+    cells = row[some], column[some]
+    shapes = rng.uniform(-15, 15, (5, 40, 2))
+    slow = raster.clearance_at(raster.centres_of(cells)[None, :, None] + shapes[:, None]).min(axis=2)
+    np.testing.assert_allclose(raster.clearance_round(cells, shapes, least=-1.0), slow, atol=1e-12)
+    given_up = raster.clearance_round(cells, shapes, least=2.0)
+    assert ((given_up == slow) | ((slow <= given_up) & (given_up <= 2.0))).all() and (slow > 2.0).any()
