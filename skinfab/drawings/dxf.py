@@ -12,15 +12,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from skinfab.drawings.labels import Label, origin_cross, piece_labels
 from skinfab.drawings.seam_sides import SeamSide, seam_sides
 from skinfab.drawings.sheet import sheet_offsets
-from skinfab.drawings.strokes import NOTCH_MM, TEXT_MM, name_place, pad_paths, short_arcs
+from skinfab.drawings.strokes import NOTCH_MM, TEXT_MM, pad_paths, short_arcs
+from skinfab.drawings.svg import THIS_SIDE_OUT
 from skinfab.files import atomic_write
 from skinfab.paths import Arc, Path
 from skinfab.skin import Skin
 
 #: Layer and its AutoCAD colour.
-LAYERS = {"OUTLINE": 7, "SEAM": 1, "DART": 30, "BORDER": 8, "NOTCH": 1, "CONDUCTOR": 5, "PAD": 4, "LABEL": 3}
+LAYERS = {"OUTLINE": 7, "SEAM": 1, "DART": 30, "BORDER": 8, "NOTCH": 1, "CONDUCTOR": 5, "PAD": 4, "LABEL": 3, "ORIGIN": 3}
 
 
 def write_dxf(skin: Skin, path: str | FilePath) -> None:
@@ -28,7 +30,8 @@ def write_dxf(skin: Skin, path: str | FilePath) -> None:
 
     A sensor's conductor is one polyline of lines and bulges (exact arcs) on layer CONDUCTOR, as wide as its
     bead; the pads are on PAD; OUTLINE has one closed polyline a piece; SEAM, DART and BORDER have the same
-    edges by what they meet, with notches and labels. The same skin gives the same bytes.
+    edges by what they meet, with notches and labels; ORIGIN has a
+    cross at the origin of each piece's coordinates. The same skin gives the same bytes.
 
     Parameters
     ----------
@@ -52,15 +55,20 @@ def write_dxf(skin: Skin, path: str | FilePath) -> None:
         sides = seam_sides(skin.pieces)
         for k, (piece, offset) in enumerate(zip(skin.pieces, offsets, strict=True)):
             space.add_lwpolyline((piece.outline + offset).tolist(), format="xy", close=True, dxfattribs={"layer": "OUTLINE"})
-            for side in sides:
-                if side.piece == k:
-                    _draw_side(space, side, offset)
-            _label(space, name_place(piece) + offset, piece.id)
+            mine = [side for side in sides if side.piece == k]
+            for side in mine:
+                _draw_side(space, side, offset)
+            for stroke in origin_cross():
+                start, end = (stroke + offset).tolist()
+                space.add_line(start, end, dxfattribs={"layer": "ORIGIN"})
             for sensor in skin.sensors_on(piece.id):
                 _stroke(space, sensor.path, offset, "CONDUCTOR", sensor.pattern.bead)
                 for pad in pad_paths(sensor):
                     _stroke(space, pad, offset, "PAD", sensor.pattern.bead)
-                _label(space, sensor.path.bbox.mean(axis=0) + offset, sensor.id)
+            for label in piece_labels(piece, mine, skin.sensors_on(piece.id)):
+                _label(space, label, offset)
+        top = max((float((piece.UV + offset)[:, 1].max()) for piece, offset in zip(skin.pieces, offsets, strict=True)), default=0.0)
+        _label(space, Label("size", THIS_SIDE_OUT, np.array([0.0, top + 2 * TEXT_MM]), left=True), np.zeros(2))
         text = io.StringIO()
         drawing.write(text)
     atomic_write(path, text.getvalue())
@@ -79,14 +87,14 @@ def _draw_side(space: Any, side: SeamSide, offset: NDArray[np.float64]) -> None:
     if side.label:
         tip = side.notch + NOTCH_MM * side.inward
         space.add_line(tuple(side.notch + offset), tuple(tip + offset), dxfattribs={"layer": "NOTCH"})
-        _label(space, tip + TEXT_MM * 0.6 * side.inward + offset, side.label)
 
 
-def _label(space: Any, at: NDArray[np.float64], text: str) -> None:
+def _label(space: Any, label: Label, offset: NDArray[np.float64]) -> None:
     from ezdxf.enums import TextEntityAlignment
 
-    entity = space.add_text(text, height=TEXT_MM, dxfattribs={"layer": "LABEL"})
-    entity.set_placement((float(at[0]), float(at[1])), align=TextEntityAlignment.MIDDLE_CENTER)
+    x, y = (label.at + offset).tolist()
+    entity = space.add_text(label.text, height=label.height, dxfattribs={"layer": "LABEL"})
+    entity.set_placement((x, y), align=TextEntityAlignment.MIDDLE_LEFT if label.left else TextEntityAlignment.MIDDLE_CENTER)
 
 
 @contextmanager

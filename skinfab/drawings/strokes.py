@@ -1,4 +1,4 @@
-"""What the drawings share: where names go, a sensor's pads apart from its conductor, arcs short enough for a format."""
+"""What the drawings share: a sensor's pads apart from its conductor, arcs short enough for a format."""
 
 from __future__ import annotations
 
@@ -7,19 +7,12 @@ import math
 import numpy as np
 
 from skinfab.paths import Arc, Path, Point, Segment
-from skinfab.pieces import Piece
 from skinfab.placement.sensor import Sensor
 from skinfab.tolerances import JOIN_MM
 
 #: Height of the drawings' letters and length of a seam's notch, mm.
 TEXT_MM = 3.0
 NOTCH_MM = 2.0
-
-
-def name_place(piece: Piece) -> Point:
-    """Middle of the piece's name, just below its bounding box, mm."""
-    low, high = piece.UV.min(axis=0), piece.UV.max(axis=0)
-    return np.array([(low[0] + high[0]) / 2, low[1] - TEXT_MM])
 
 
 def pad_paths(sensor: Sensor) -> tuple[Path, ...]:

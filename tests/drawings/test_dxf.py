@@ -16,6 +16,7 @@ from ezdxf.math import bulge_to_arc
 from skinfab.drawings.dxf import write_dxf
 from skinfab.drawings.sheet import sheet_offsets
 from skinfab.drawings.strokes import short_arcs
+from skinfab.drawings.svg import THIS_SIDE_OUT
 from skinfab.paths import Arc
 from skinfab.skin import Skin
 
@@ -64,9 +65,9 @@ def test_layers_units_and_audit(skin: Skin, drawing: Any) -> None:
     assert drawing.units == ezdxf.units.MM
     assert not drawing.audit().errors
     count = Counter(e.dxf.layer for e in drawing.modelspace())
-    assert count == {"OUTLINE": 2, "SEAM": 8, "DART": 8, "NOTCH": 16, "CONDUCTOR": 2, "PAD": 4, "LABEL": 20}
+    assert count == {"OUTLINE": 2, "SEAM": 8, "DART": 8, "NOTCH": 16, "CONDUCTOR": 2, "PAD": 4, "LABEL": 23, "ORIGIN": 4}
     labels = {e.dxf.text for e in drawing.modelspace().query("TEXT")}
-    assert labels == {"P1", "P2", "C1", "S1", *map(str, range(1, 9))}
+    assert labels == {"P1", "P2", "135.0 x 135.0 mm", "45.0 x 45.0 mm", "C1", "S1", THIS_SIDE_OUT, *map(str, range(1, 9))}
 
 
 def test_outlines_are_closed_and_keep_their_area(skin: Skin, drawing: Any) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import xml.etree.ElementTree as ET
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -89,10 +90,43 @@ def test_names_roles_and_no_mirrored_text(skin: Skin, tmp_path: Path) -> None:
     root, _ = parse(tmp_path / "flat.svg")
     words = [t.text for t in root.iter(f"{{{NS['s']}}}text")]
     assert {"P1", "P2", "C1", "S1"} <= set(words) and all(words.count(str(k)) == 2 for k in range(1, 9))
-    classes = [p.attrib["class"] for p in root.iter(f"{{{NS['s']}}}path")]
+    classes = [p.attrib["class"] for p in root.findall("s:g[@class='piece']//s:path", NS)]
     assert classes.count("dart") == 8 and classes.count("seam") == 8 and classes.count("pad") == 4
     assert "scale(" not in text and "cube &amp; co" in text
     assert root.find(".//s:g[@id='C1']", NS).attrib["stroke-width"] == "0.785"  # type: ignore[union-attr]
+
+
+def test_legend_is_above_the_pieces_and_shows_what_is_drawn(skin: Skin, tmp_path: Path) -> None:
+    write_svg(skin, tmp_path / "flat.svg")
+    root, height = parse(tmp_path / "flat.svg")
+    legend = root.find("s:g[@class='legend']", NS)
+    assert legend is not None
+    words = [text.text for text in legend.findall("s:text", NS)]
+    assert words[0] == "This side out: the pieces are seen from outside the object"
+    # The cube is closed: it has no edge of its own.
+    assert [str(word).split(":")[0] for word in words[1:]] == ["seam", "dart", "conductor", "contact pad", "origin (0, 0) of a piece"]
+    lowest = max(float(text.attrib["y"]) for text in legend.findall("s:text", NS))
+    far = max(float((p.UV + o)[:, 1].max()) for p, o in zip(skin.pieces, sheet_offsets(skin.pieces), strict=True))
+    assert lowest < height - (far + MARGIN_MM)
+    plain = replace(skin, sensors=())
+    write_svg(plain, tmp_path / "plain.svg")
+    assert "contact pad" not in (tmp_path / "plain.svg").read_text()
+
+
+def test_cross_at_the_origin_of_each_piece(skin: Skin, tmp_path: Path) -> None:
+    write_svg(skin, tmp_path / "flat.svg")
+    root, height = parse(tmp_path / "flat.svg")
+    for piece, offset in zip(skin.pieces, sheet_offsets(skin.pieces), strict=True):
+        drawn = root.find(f"s:g[@id='{piece.id}']/s:path[@class='origin']", NS)
+        assert drawn is not None
+        points, length = points_of(drawn.attrib["d"], height)
+        np.testing.assert_allclose(points.mean(axis=0), offset + MARGIN_MM, atol=1e-6)
+        assert length == pytest.approx(6.0) and np.ptp(points, axis=0) == pytest.approx([3, 3])
+
+
+def test_words_have_a_halo(skin: Skin, tmp_path: Path) -> None:
+    write_svg(skin, tmp_path / "flat.svg")
+    assert "stroke:#fff" in (tmp_path / "flat.svg").read_text() and "paint-order:stroke" in (tmp_path / "flat.svg").read_text()
 
 
 def test_same_skin_same_bytes(skin: Skin, tmp_path: Path) -> None:

@@ -1,0 +1,141 @@
+"""Where the drawings' words go: beside what they name, off the ink, and never in a heap."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from skinfab.drawings.seam_sides import SeamSide
+from skinfab.drawings.strokes import NOTCH_MM, TEXT_MM
+from skinfab.paths import Point
+from skinfab.pieces import Piece
+from skinfab.placement.sensor import Sensor
+from skinfab.tolerances import PREVIEW_CHORD_MM
+from skinfab.wire_exits import wire_pads
+
+#: Height of the letters of a size, mm, and half the arm of the cross at a piece's origin.
+SMALL_MM = 2.2
+CROSS_MM = 1.5
+
+#: A sans serif's digits and capitals are at most this wide, as a part of their height.
+_WIDTH = 0.65
+
+#: Least distance of a sensor's name from any ink, mm, and how far from the pads it may go.
+_CLEAR_MM = 0.4
+_FARTHEST_MM = 15.0
+
+#: How far off the next piece on the sheet is at least, see `skinfab.drawings.sheet.sheet_offsets`.
+_NEXT_MM = 10.0
+
+#: A name on the far side of the pads is as good as one behind them this much farther off, mm.
+_BEHIND_MM = 4.0
+
+
+@dataclass(frozen=True, eq=False)
+class Label:
+    """A word of the drawing.
+
+    Parameters
+    ----------
+    kind : "piece", "size", "sensor" or "seam"
+    text : str
+    at : (2,) float, mm
+        Its middle, or the middle of its left end where `left`.
+    height : float, mm
+    left : bool
+    """
+
+    kind: Literal["piece", "size", "sensor", "seam"]
+    text: str
+    at: Point
+    height: float = TEXT_MM
+    left: bool = False
+
+    @property
+    def width(self) -> float:
+        """An estimate, mm: a drawing does not know its reader's font."""
+        return _WIDTH * self.height * len(self.text)
+
+    @property
+    def box(self) -> shapely.Polygon:
+        low = self.at - np.array([0.0 if self.left else self.width / 2, self.height / 2])
+        return shapely.box(*low, *(low + np.array([self.width, self.height])))
+
+
+def piece_labels(piece: Piece, sides: Sequence[SeamSide], sensors: Sequence[Sensor]) -> list[Label]:
+    """The words of one piece, in its frame.
+
+    A sensor's name stands behind its pads, clear of all ink. A seam's number stands at its notch, inside the piece
+    or else outside; it is left out where it would cover another word, or where the seam is shorter than the number.
+
+    Parameters
+    ----------
+    piece : Piece
+    sides : sequence of SeamSide
+        Of this piece.
+    sensors : sequence of Sensor
+        On this piece.
+    """
+    labels = _name(piece)
+    inside = shapely.Polygon(piece.outline).buffer(0)
+    ink = shapely.MultiLineString([s.printed_path.to_polyline(tolerance=PREVIEW_CHORD_MM) for s in sensors])
+    bead = max((s.pattern.bead for s in sensors), default=0.0)
+    for sensor in sensors:
+        labels.append(_sensor(sensor, inside, ink, bead, labels))
+    for side in sides:
+        label = _seam(side, inside, ink, bead, labels)
+        if label is not None:
+            labels.append(label)
+    return labels
+
+
+def origin_cross() -> NDArray[np.float64]:
+    """(2, 2, 2) mm: the two strokes of the cross at a piece's origin."""
+    return CROSS_MM * np.array([[[-1.0, 0], [1, 0]], [[0, -1], [0, 1]]])
+
+
+def _name(piece: Piece) -> list[Label]:
+    """Id and size, below the piece from its left edge on; no size where it would run into the next piece's name."""
+    low = piece.UV.min(axis=0)
+    name = Label("piece", piece.id, low + np.array([CROSS_MM, -CROSS_MM - TEXT_MM / 2]), left=True)
+    w, h = piece.size
+    at = name.at + np.array([name.width + TEXT_MM / 2, 0.0])
+    sizes = [Label("size", text, at, SMALL_MM, left=True) for text in (f"{w:.1f} x {h:.1f} mm", f"{w:.1f} x {h:.1f}")]
+    fitting = [size for size in sizes if at[0] + size.width <= low[0] + w + _NEXT_MM - CROSS_MM]
+    return [name, *fitting[:1]]
+
+
+def _sensor(sensor: Sensor, inside: shapely.Polygon, ink: shapely.MultiLineString, bead: float, there: Sequence[Label]) -> Label:
+    pads = wire_pads([sensor])
+    middle, away = np.mean([pad.at for pad in pads], axis=0), pads[0].away
+    radius, angle = np.meshgrid(np.arange(TEXT_MM / 2, _FARTHEST_MM, 0.5), np.linspace(-np.pi, np.pi, 24, endpoint=False), indexing="ij")
+    along = np.stack([np.cos(angle), np.sin(angle)], axis=-1).reshape(-1, 2)
+    turn = np.array([away, [-away[1], away[0]]])
+    places = middle + radius.reshape(-1, 1) * (along @ turn)
+    cost = radius.ravel() + _BEHIND_MM * (1 - along[:, 0]) / 2
+    tries = [Label("sensor", sensor.id, places[k]) for k in np.argsort(cost.round(6), kind="stable")]
+    boxes = np.array([label.box for label in tries])
+    clear = shapely.distance(boxes, ink) >= bead / 2 + _CLEAR_MM
+    clear &= ~shapely.intersects(boxes, shapely.MultiPolygon([label.box for label in there]).buffer(0))
+    best = clear & shapely.contains(inside, boxes)
+    # Over the outline if need be; on ink only where there is nothing else for 15 mm round.
+    choice = best if best.any() else clear
+    return tries[int(np.argmax(choice))]
+
+
+def _seam(side: SeamSide, inside: shapely.Polygon, ink: shapely.MultiLineString, bead: float, there: Sequence[Label]) -> Label | None:
+    length = float(np.hypot(*np.diff(side.points, axis=0).T).sum())
+    within = Label("seam", side.label, side.notch + (NOTCH_MM + 0.6 * TEXT_MM) * side.inward)
+    if not side.label or length < within.width:
+        return None
+    outside = Label("seam", side.label, side.notch - 0.8 * TEXT_MM * side.inward)
+    words = shapely.MultiPolygon([label.box for label in there]).buffer(0)
+    free = [label for label in (within, outside) if not label.box.intersects(words)]
+    # Outside may be the other flank of a dart, and inside a sensor: better over ink than nowhere, for it has a halo.
+    off = [label for label in free if not label.box.distance(ink) < bead / 2 and (label is within or not label.box.intersects(inside))]
+    return next(iter([*off, *(label for label in free if label is within)]), None)
