@@ -22,8 +22,9 @@ from skinfab.wire_exits import wire_pads
 SMALL_MM = 2.2
 CROSS_MM = 1.5
 
-#: A sans serif's digits and capitals are at most this wide, as a part of their height.
+#: A sans serif's digits and capitals are at most this wide, as a part of their height; so are stops and blanks.
 _WIDTH = 0.65
+_NARROW = 0.33
 
 #: Least distance of a sensor's name from any ink, mm, and how far from the pads it may go.
 _CLEAR_MM = 0.4
@@ -59,7 +60,7 @@ class Label:
     @property
     def width(self) -> float:
         """An estimate, mm: a drawing does not know its reader's font."""
-        return _WIDTH * self.height * len(self.text)
+        return self.height * sum(_NARROW if letter in ". " else _WIDTH for letter in self.text)
 
     @property
     def box(self) -> shapely.Polygon:

@@ -68,7 +68,7 @@ def test_a_number_steps_outside_where_ink_is_inside(skin: Skin) -> None:
     assert plain.at[1] > 0 > number.at[1]
 
 
-@pytest.mark.parametrize(("w", "texts"), [(40.0, ["P1", "40.0 x 9.0 mm"]), (14.7, ["P1", "14.7 x 9.0"]), (4.0, ["P1"])])
+@pytest.mark.parametrize(("w", "texts"), [(40.0, ["P1", "40.0 x 9.0 mm"]), (11.9, ["P1", "11.9 x 9.0"]), (4.0, ["P1"])])
 def test_name_and_size_stay_clear_of_the_next_piece(w: float, texts: list[str]) -> None:
     labels = piece_labels(plate(w, 9.0), [], [])
     assert [label.text for label in labels] == texts
