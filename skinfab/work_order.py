@@ -100,7 +100,8 @@ def work_steps(recipe: Recipe, material: Material, *, jobs: Sequence[PrintJob] =
         layers = ", then ".join(f"the {b.layer} layer ({b.depth:g} mm)" for b in recipe.batches)
         no_sensors = "has no sensors and is" if len(bare) == 1 else "have no sensors and are"
         steps.append(
-            f"{', '.join(bare)} {no_sensors} only cast, on any level place: mix by the table, degas, pour and spread {layers}; "
+            f"{', '.join(bare)} {no_sensors} only cast, on any level place: mix by the table, what is too little to weigh "
+            f"together with another piece, degas, pour and spread {layers}; "
             f"cure for {recipe.cure_h:g} h."
         )
     return [*steps, *(_wire(job, recipe) for job in jobs if job.slots), *_finish(recipe)]
