@@ -131,11 +131,22 @@ def best_in(region: Region, pattern: Pattern, rng: np.random.Generator, *, packe
         return None
     space, between_creases = region.space, region.between_creases
     roomiest = np.argsort(-np.round(poses.slack, 2), kind="stable")
-    for order in (_from_one_end(region, poses), roomiest) if packed else (roomiest,):
+    for order in (_from_one_end(region, poses) if packed else _far_from_others(region, poses), roomiest):
         sensor = first_fit(space, pattern, footprint, poses, order, between_creases=between_creases)
         if sensor:
             return sensor
     return nudged_fit(space, pattern, footprint, poses, int(roomiest[0]), between_creases=between_creases)
+
+
+def _far_from_others(region: Region, poses: Poses) -> NDArray[np.int64]:
+    """Poses with some room to spare, those farthest from the sensors that are there first; none where there is no sensor yet."""
+    ok = np.flatnonzero(poses.slack >= region.raster.step / 2)
+    middles = np.array([(curves.low.min(axis=0) + curves.high.max(axis=0)) / 2 for curves in region.space.taken])
+    if not len(ok) or not len(middles):
+        return ok[:0]
+    apart = np.hypot(*np.moveaxis(poses.places[ok, None] - middles, 2, 0)).min(axis=1)
+    # Whole millimetres, so that room has a say too.
+    return ok[np.lexsort((-poses.slack[ok], -np.round(apart)))]
 
 
 def _from_one_end(region: Region, poses: Poses) -> NDArray[np.int64]:

@@ -17,7 +17,7 @@ from skinfab.placement.space import Footprint, Space
 Array = NDArray[np.float64]
 
 #: Places tried on the raster at each angle, and of these the best that are verified exactly.
-_PLACES = 1200
+_PLACES = 2400
 _VERIFIED = 12
 #: A pose that lacks more than so many steps of the raster is not nudged: small moves will not free it.
 _HOPELESS = 4.0

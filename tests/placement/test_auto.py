@@ -142,6 +142,16 @@ def test_a_large_piece_is_filled(sheet: Callable) -> None:
     assert place(mesh, [piece], material=MATERIAL) == (sensors, warnings)
 
 
+def test_sensors_reach_into_an_arm(sheet: Callable) -> None:
+    # A broad part with room for all four and a narrow arm: by room alone, the arm stays empty.
+    mesh, piece = sheet(320, 160, step=20, without=lambda c: (c[:, 0] > 160) & (c[:, 1] > 60))
+    options = AutoOptions(kinds=("contact-spiral",), sizes=(32,), per_piece=4)
+    sensors, warnings = place(mesh, [piece], material=MATERIAL, options=options)
+    middles = np.array([s.path.bbox.mean(axis=0) for s in sensors])
+    assert len(sensors) == 4 and not warnings
+    assert middles[:, 0].max() > 260 and (middles[:, 0] < 160).sum() >= 2
+
+
 def test_no_more_than_the_channels_without_being_asked(sheet: Callable) -> None:
     mesh, piece = sheet(500, 400, step=50)
     sensors, warnings = place(mesh, [piece], material=MATERIAL)
