@@ -90,6 +90,7 @@ def _flatten(args: argparse.Namespace, mesh: Mesh) -> tuple[list[Piece], list[Di
     from skinfab.seams.auto import find_seams
     from skinfab.seams.cones import flatten_with_cones
     from skinfab.seams.cut import open_pieces
+    from skinfab.seams.finish import finish
     from skinfab.seams.judge import Limits
     from skinfab.seams.pieces import to_pieces
 
@@ -108,7 +109,9 @@ def _flatten(args: argparse.Namespace, mesh: Mesh) -> tuple[list[Piece], list[Di
                 return pieces, distortions
         steps.say(["the surface cannot lie flat in one go, so it is cut automatically"])
         with terminal_progress() as progress:
-            seams = find_seams(mesh, Limits(mean=args.max_distortion), progress=lambda done: progress(done, "cutting and flattening"))
+            limits = Limits(mean=args.max_distortion)
+            seams = find_seams(mesh, limits, progress=lambda done: progress(done, "cutting and flattening"))
+            seams = finish(mesh, seams, limits)
         named = to_pieces(mesh, seams.pieces)
         by_first_face = {int(p.faces[0]): v.distortion for p, v in seams.pieces}
         return list(named), [by_first_face[int(p.faces[0])] for p in named]

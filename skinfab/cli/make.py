@@ -125,7 +125,7 @@ def _cut_mesh(args: argparse.Namespace, watch: Stopwatch, progress: Progress) ->
     progress(0.0, "reading")
     with watch.phase("load"):
         loaded = steps.load(args)
-    # A cut is judged by flattening, so most of the flattening is in here.
+    # A cut is judged by flattening as far as it takes; "flatten" drives it to the end.
     with watch.phase("segment"):
         seams = steps.cut(args, loaded, used, part_of(progress, 0.05, 0.6))
     with watch.phase("flatten"):

@@ -128,12 +128,14 @@ def limits(max_distortion: float, used: Profiles) -> Limits:
     return Limits(mean=max_distortion, size=(width - rim, depth - rim))
 
 
-def to_skin(loaded: Loaded, seams: Seams, *, used: Profiles, max_distortion: float, seed: int) -> tuple[Skin, list[Distortion]]:
-    """The document of a cut mesh without sensors, and each piece's distortion in its order."""
+def to_skin(loaded: Loaded, found: Seams, *, used: Profiles, max_distortion: float, seed: int) -> tuple[Skin, list[Distortion]]:
+    """The document of a cut mesh without sensors, its pieces flattened to the end, and each piece's distortion in its order."""
+    from skinfab.seams.finish import finish
     from skinfab.seams.pieces import to_pieces
     from skinfab.skin import Skin, Source
 
     topology = loaded.mesh.topology
+    seams = finish(loaded.mesh, found, limits(max_distortion, used))
     pieces = to_pieces(loaded.mesh, seams.pieces)
     skin = Skin(
         mesh=loaded.mesh,

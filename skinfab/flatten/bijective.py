@@ -39,9 +39,14 @@ def flatten_bijective(
         See `IsometricSolver.refine`.
     """
     topology = topology or Topology(F)
-    loop = topology.boundary_loops[0]
     start = tutte_embedding(V, F, topology=topology)
     start = start * best_scale(V, F, start)
-    edge = np.linalg.norm(V[loop] - V[np.roll(loop, -1)], axis=1)
-    apart = Apart(loop, APART_REACH * float(np.median(edge)), APART_WEIGHT)
+    apart = keep_apart(V, topology)
     return IsometricSolver(V, F).refine(start, max_steps=_MOST_STEPS, tolerance=tolerance, hopeless_above=hopeless_above, apart=apart).UV
+
+
+def keep_apart(V: NDArray[np.float64], topology: Topology) -> Apart:
+    """The barrier for a disk: a reach that suits its boundary's edges."""
+    loop = topology.boundary_loops[0]
+    edge = np.linalg.norm(V[loop] - V[np.roll(loop, -1)], axis=1)
+    return Apart(loop, APART_REACH * float(np.median(edge)), APART_WEIGHT)

@@ -18,7 +18,7 @@ from skinfab.seams.coarse import coarsen, transfer
 from skinfab.seams.creases import borders, crease_seams, merge_small
 from skinfab.seams.cut import seam_length
 from skinfab.seams.glue import glue_pieces
-from skinfab.seams.judge import Limits, judge
+from skinfab.seams.judge import Limits
 from skinfab.seams.refine import Judged, refine_seams
 from skinfab.seams.weights import seam_weights
 
@@ -78,35 +78,43 @@ def find_seams(mesh: Mesh, limits: Limits, *, neck: float = 4.0, progress: Calla
     Returns
     -------
     Seams
+        Flattened as far as it takes to accept them; `finish.finish` drives d to its least.
     """
     aim = replace(limits, mean=4 + _AIM * (limits.mean - 4))
     small = coarsen(mesh, _COARSE_FACES)
-    seams = _search(small, aim, limits, neck)
+    report = progress or (lambda done: None)
+    search_share = 1.0 if small is mesh else 0.5
+    seams = _search(small, aim, limits, neck, lambda done: report(search_share * done))
     if small is mesh:
-        seams = Seams(seams.cut, [(piece, judge(mesh, piece, limits)) for piece, _ in seams.pieces])
-    else:
-        cut = transfer(small, seams.cut, mesh)
-        _, label = mesh.topology.face_components(cut)
-        merged = merge_small(mesh, label, _SCRAP * mesh.area)
-        # Within a piece the seams that part nothing (darts) stay; between pieces only the borders do.
-        EF = mesh.topology.EF
-        inside = (EF[:, 1] >= 0) & (label[EF[:, 0]] == label[EF[:, 1]])
-        cut = (cut & inside) | borders(mesh, merged)
-        cut, pieces = refine_seams(mesh, cut, limits, seam_weights(mesh), progress=progress)
-        seams = Seams(*glue_pieces(mesh, cut, pieces, limits, neck=neck, excess=np.inf, smaller_than=_SMALL * mesh.area))
-    return seams
+        return seams
+    cut = transfer(small, seams.cut, mesh)
+    _, label = mesh.topology.face_components(cut)
+    merged = merge_small(mesh, label, _SCRAP * mesh.area)
+    # Within a piece the seams that part nothing (darts) stay; between pieces only the borders do.
+    EF = mesh.topology.EF
+    inside = (EF[:, 1] >= 0) & (label[EF[:, 0]] == label[EF[:, 1]])
+    cut = (cut & inside) | borders(mesh, merged)
+    fine = {"tolerance": _SEARCH_DECREASE}
+    cut, pieces = refine_seams(mesh, cut, limits, seam_weights(mesh), progress=lambda done: report(0.5 + 0.4 * done), **fine)
+    return Seams(*glue_pieces(mesh, cut, pieces, limits, neck=neck, excess=np.inf, smaller_than=_SMALL * mesh.area, **fine))
 
 
-def _search(mesh: Mesh, aim: Limits, limits: Limits, neck: float) -> Seams:
+def _search(mesh: Mesh, aim: Limits, limits: Limits, neck: float, progress: Callable[[float], None]) -> Seams:
     weight = seam_weights(mesh)
     creases = crease_seams(mesh)
     starts = [creases] if creases.any() else []
     starts.append(np.zeros(len(mesh.topology.E), dtype=bool))
     found: list[Seams] = []
-    for start in starts:
-        cut, pieces = refine_seams(mesh, start, aim, weight, tolerance=_SEARCH_DECREASE)
+    for k, start in enumerate(starts):
+        begun = k / len(starts)
+
+        def report(done: float, begun: float = begun) -> None:
+            progress(begun + 0.8 * done / len(starts))
+
+        cut, pieces = refine_seams(mesh, start, aim, weight, tolerance=_SEARCH_DECREASE, progress=report)
         cut, pieces = glue_pieces(mesh, cut, pieces, aim, neck=neck, excess=_GLUE_EXCESS * (limits.mean - 4), tolerance=_SEARCH_DECREASE)
         found.append(Seams(cut, pieces))
+        progress((k + 1) / len(starts))
         if len(pieces) > _MANY:
             break
     return min(found, key=lambda s: _cost(mesh, s))

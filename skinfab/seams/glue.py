@@ -17,6 +17,9 @@ from skinfab.tolerances import NEWTON_DECREASE
 BoolArray = NDArray[np.bool_]
 IntArray = NDArray[np.int64]
 
+#: An object of hundreds of pieces is not made whole by gluing.
+_MOST_TRIALS = 1200
+
 #: A border is not glued past a vertex whose angle defect is larger (rad): the cone there could not lie flat.
 _CONE = 0.3
 
@@ -62,7 +65,7 @@ def glue_pieces(
     refused: set[tuple[int, int, int]] = set()
     blunt = ~_is_cone(mesh)
     fresh = len(judged)
-    while True:
+    for _ in range(_MOST_TRIALS):
         chain = _longest_chain(mesh, cut, owner, blunt, refused, neck)
         if chain is None:
             break
@@ -74,7 +77,7 @@ def glue_pieces(
             refused.add((a, b, int(edges.min())))
             continue
         (piece,) = open_pieces(mesh, trial, faces=faces)
-        verdict = judge(mesh, piece, limits, tolerance=tolerance) if piece.is_disk else None
+        verdict = judge(mesh, piece, limits, tolerance=tolerance, untangle=False) if piece.is_disk else None
         if verdict is None or not verdict.accepted or verdict.distortion.mean > _mean(mesh, judged[a], judged[b]) + excess:
             refused.add((a, b, int(edges.min())))
             continue

@@ -58,24 +58,26 @@ class Verdict:
         return not (self.too_distorted or self.overlaps or self.too_large)
 
 
-def judge(mesh: Mesh, piece: OpenPiece, limits: Limits, *, tolerance: float = NEWTON_DECREASE) -> Verdict:
+def judge(mesh: Mesh, piece: OpenPiece, limits: Limits, *, tolerance: float = NEWTON_DECREASE, untangle: bool = True) -> Verdict:
     """Flatten a disk, to `tolerance` of what is above 4, and hold it against `limits`.
 
     A piece that cannot keep to the bound is flattened only as far as that takes to see. One that overlaps is
-    flattened anew without overlap where that costs little: it may then need a dart, but not be parted.
+    flattened anew without overlap where that costs little (unless `untangle` is off, which is quicker): it may then
+    need a dart, but not be parted.
     """
     V, F, topology = mesh.V[piece.vertices], piece.F, piece.topology
     uv = flatten_isometric(V, F, topology=topology, tolerance=tolerance, hopeless_above=limits.mean)
-    first = _verdict(mesh, piece, uv, limits)
-    if not first.overlaps or first.too_distorted or first.too_large:
+    first = verdict_of(mesh, piece, uv, limits)
+    if not first.overlaps or first.too_distorted or first.too_large or not untangle:
         return first
     most = 4 + _APART_EXCESS * (limits.mean - 4)
     uv = flatten_bijective(V, F, topology=topology, tolerance=tolerance, hopeless_above=most)
-    apart = _verdict(mesh, piece, uv, limits)
+    apart = verdict_of(mesh, piece, uv, limits)
     return first if apart.distortion.mean > most else apart
 
 
-def _verdict(mesh: Mesh, piece: OpenPiece, uv: NDArray[np.float64], limits: Limits) -> Verdict:
+def verdict_of(mesh: Mesh, piece: OpenPiece, uv: NDArray[np.float64], limits: Limits) -> Verdict:
+    """Hold a flattening of `piece`, (p, 2) mm in any frame, against `limits`."""
     uv = orient(uv)
     distortion = measure(mesh.V[piece.vertices], piece.F, uv, topology=piece.topology)
     area = float(mesh.face_areas[piece.faces].sum())

@@ -21,6 +21,12 @@ BoolArray = NDArray[np.bool_]
 #: A piece that this many darts did not bring under the bound is parted instead.
 _MOST_DARTS = 16
 
+#: Flattened triangles, counted again each time, after which it is given up: some half a minute of work, ...
+_MOST_TRIANGLES = 400_000
+
+#: ... and this many times the whole mesh, for fine meshes whose pieces need a few more cuts.
+_MOST_ROUNDS = 20
+
 Judged = tuple[OpenPiece, Verdict]
 
 
@@ -61,9 +67,10 @@ def refine_seams(
     InputError
         No seam opens a piece to a disk: the mesh is not manifold or not consistently wound.
     RefusedError
-        A single triangle breaks `limits`.
+        A single triangle breaks `limits`, or the surface is too rough or too detailed to come to an end with.
     """
     cut = cut.copy()
+    left = _MOST_TRIANGLES + _MOST_ROUNDS * len(mesh.F)
     todo = [(piece, 0) for piece in open_pieces(mesh, cut)]
     done: list[Judged] = []
     finished_area = 0.0
@@ -75,6 +82,9 @@ def refine_seams(
             edge_weight = weight[mesh_edges(mesh, piece, np.arange(len(topology.E)))]
             opened = mesh_edges(mesh, piece, cut_to_disk(topology, edge_weight, len(piece.vertices)))
         else:
+            left -= len(piece.F)
+            if left < 0:
+                raise _endless(mesh, len(done), 1 - finished_area / mesh.area)
             verdict = judge(mesh, piece, limits, tolerance=tolerance)
             if verdict.accepted:
                 done.append((piece, verdict))
@@ -102,6 +112,13 @@ def _mend(mesh: Mesh, piece: OpenPiece, verdict: Verdict, weight: NDArray[np.flo
     else:
         ends = farthest_faces(piece, verdict.UV)
     return split(mesh, piece, ends, weight), 0
+
+
+def _endless(mesh: Mesh, pieces: int, missing: float) -> RefusedError:
+    return RefusedError(
+        f"{mesh.name} is too rough or too detailed for a skin: {pieces} pieces lie flat, but {missing:.0%} of the surface does not "
+        "yet; smooth or simplify the mesh, raise --max-distortion, or cut it by hand"
+    )
 
 
 def _stuck(mesh: Mesh, piece: OpenPiece, verdict: Verdict | None, limits: Limits) -> SkinfabError:
