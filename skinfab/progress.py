@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Protocol
 
 #: The phases of the main job, in the order of the report.
-PHASES = ("load", "segment", "flatten", "place", "gcode", "mould")
+PHASES = ("load", "segment", "flatten", "place", "gcode", "mould", "draw")
 
 
 class Progress(Protocol):

@@ -71,6 +71,9 @@ def staged_folder(target: str | Path) -> Iterator[Path]:
             if fault.errno in _NO_ROOM:
                 raise InputError(explain_os_error(fault, target)) from fault
             raise
+        except InputError as fault:
+            # The hidden folder is ours to know: the user gave the target.
+            raise InputError(str(fault).replace(str(stage), str(target))) from fault
         with _signals_wait():
             _or_explain(lambda: _move_into_place(stage, target), target)
     finally:
@@ -89,7 +92,7 @@ def _signals_wait() -> Iterator[None]:
         return
     held: list[int] = []
     # A signal mask would not do: any other thread (a progress bar's) would take the signal and hand it on.
-    before = {s: signal.getsignal(s) for s in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)}
+    before = {s: signal.getsignal(s) for s in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGALRM)}
     for number, handler in before.items():
         if callable(handler):
             signal.signal(number, lambda got, frame: held.append(got))
@@ -128,7 +131,10 @@ def _move_into_place(stage: Path, target: Path) -> None:
         # All checks come before the first rename: either everything moves or nothing.
         if (target / name).is_dir():
             raise InputError(f"cannot write {target / name}: a folder of that name is in the way; move it or give another -o")
-        (target / name.parent).mkdir(parents=True, exist_ok=True)
+        folder = target / name.parent
+        folder.mkdir(parents=True, exist_ok=True)
+        if folder.stat().st_dev != stage.stat().st_dev:
+            raise InputError(f"{folder} lies on another disk than {target}, so the results cannot appear as one; give another -o")
     stale = _made_earlier(target) - set(new)
     for name in new:
         with (stage / name).open("rb+") as written:

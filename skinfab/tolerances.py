@@ -97,3 +97,7 @@ CAUTION_WRAP_STRAIN = 0.10
 #: A sensor is asked for at a point no farther from the surface than this fraction of the object's diagonal: points read off a
 #: screen or a drawing miss by less, and those of another scale, unit or origin by far more.
 POINT_FRACTION = 0.05
+
+#: Objects outside this range are mistakes of units: squares and products of their lengths leave the range of numbers.
+SMALLEST_OBJECT_MM = 1e-9
+LARGEST_OBJECT_MM = 1e9

@@ -7,6 +7,7 @@ import resource
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 from pathlib import Path
 
@@ -159,3 +160,23 @@ sys.exit(frame.main(["make"]))
     _, said = work.communicate(timeout=20)
     assert (work.returncode, said) == (130, "skinfab: interrupted; nothing half-written was left\n")
     assert list(tmp_path.iterdir()) == []
+
+
+def test_another_disk_inside_the_target_is_refused_before_anything_moves(tmp_path: Path) -> None:
+    elsewhere = Path("/dev/shm")
+    if not elsewhere.is_dir() or elsewhere.stat().st_dev == tmp_path.stat().st_dev:
+        pytest.skip("there is no second file system at /dev/shm to link to")
+    with tempfile.TemporaryDirectory(dir=elsewhere) as other:
+        out = tmp_path / "out"
+        out.mkdir()
+        (out / "gcode").symlink_to(other)
+
+        def write() -> None:
+            with staged_folder(out) as folder:
+                (folder / "gcode").mkdir()
+                (folder / "gcode/P1.gcode").write_text("; new\n")
+                (folder / "a.txt").write_text("new")
+
+        with pytest.raises(InputError, match="gcode lies on another disk"):
+            write()
+        assert sorted(p.name for p in out.iterdir()) == ["gcode"] and not any(Path(other).iterdir())

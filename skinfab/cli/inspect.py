@@ -6,6 +6,8 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from skinfab.cli import steps
+
 if TYPE_CHECKING:
     from skinfab.mesh.inspect import Inspection
     from skinfab.mesh.io import Loaded
@@ -22,7 +24,7 @@ def add_parser(subparsers: Any) -> None:
     p = subparsers.add_parser("inspect", help="say what a mesh is, what is wrong with it and what repair would do")
     p.add_argument("mesh", type=Path, metavar="MESH", help="OBJ, STL, PLY, OFF or GLB file")
     p.add_argument("--units", choices=("mm", "cm", "m", "in"), help="unit of the file (default: guessed from its size)")
-    p.add_argument("--scale", type=float, default=1.0, metavar="S", help="multiply all coordinates by S")
+    p.add_argument("--scale", type=steps.positive, default=1.0, metavar="S", help="multiply all coordinates by S")
     p.add_argument("--json", action="store_true", help="print one JSON object")
     p.set_defaults(run=run)
 

@@ -32,6 +32,7 @@ COMMANDS = {
 }
 
 INTERRUPTED = 130  # what a shell reports for a command that Ctrl-C ended
+AGAIN_S = 2.0  # after so many seconds an interrupt that did not get through is repeated
 BROKEN_PIPE = 141  # and for one whose reader went away
 
 
@@ -160,17 +161,24 @@ def _quiet_warnings() -> Iterator[None]:
 
 @contextmanager
 def _termination_as_interrupt() -> Iterator[None]:
-    """Let SIGTERM and SIGHUP unwind like Ctrl-C, so that temporary files go."""
+    """Let SIGTERM and SIGHUP unwind like Ctrl-C, so that temporary files go, and see that each gets through."""
 
     def interrupt(signum: int, frame: FrameType | None) -> None:
+        # An interrupt inside a library's callback can be swallowed there: it comes again until it gets through.
+        signal.setitimer(signal.ITIMER_REAL, AGAIN_S)
         raise KeyboardInterrupt
 
-    # Whatever was set to be ignored (nohup) stays ignored.
-    caught = [s for s in (signal.SIGTERM, signal.SIGHUP) if signal.getsignal(s) == signal.SIG_DFL]
+    # Whatever was set to be ignored (nohup), or is handled by a host program, stays so.
+    ours = {signal.SIGINT: signal.default_int_handler, **dict.fromkeys((signal.SIGTERM, signal.SIGHUP, signal.SIGALRM), signal.SIG_DFL)}
+    caught = {s: before for s, before in ours.items() if signal.getsignal(s) == before}
+    if signal.SIGALRM not in caught:
+        caught = {}
     try:
         for s in caught:
             signal.signal(s, interrupt)
         yield
     finally:
-        for s in caught:
-            signal.signal(s, signal.SIG_DFL)
+        if caught:
+            signal.setitimer(signal.ITIMER_REAL, 0)
+        for s, before in caught.items():
+            signal.signal(s, before)

@@ -97,8 +97,9 @@ def _make(args: argparse.Namespace, folder: Path, watch: Stopwatch, progress: Pr
         if not can_be_cast(piece, used.material)
     ]
     progress(0.9, "drawing")
-    save_skin(skin, folder / "skin.skin")
-    _write_drawings(skin, folder)
+    with watch.phase("draw"):
+        save_skin(skin, folder / "skin.skin")
+        _write_drawings(skin, folder)
     report = build_report(
         skin,
         distortions,
@@ -110,7 +111,8 @@ def _make(args: argparse.Namespace, folder: Path, watch: Stopwatch, progress: Pr
         peak_rss_mb=peak_rss_mb(),
         warnings=[*notes, *warnings, *remarks, *(flaw for m in moulds for flaw in m.warnings), *uncast],
     )
-    _write_pictures(skin, distortions, report, folder)
+    with watch.phase("draw"):
+        _write_pictures(skin, distortions, report, folder)
     # The pictures take a while, and the report says how long all of it took.
     report |= {"timing_s": watch.timing_s(), "peak_rss_mb": peak_rss_mb()}
     write_report(report, folder / "report.json")
@@ -164,10 +166,16 @@ def _gcode_facts(written: PieceGcode) -> dict[str, Any]:
 
 
 def _write_moulds(skin: Skin, folder: Path, used: steps.Profiles) -> list[CastingMould]:
+    from skinfab.errors import InputError
     from skinfab.mould import skin_moulds, write_mould
 
     folder.mkdir()
     moulds = skin_moulds(skin, material=used.material)
+    if not moulds:
+        size = max(skin.mesh.bbox[1] - skin.mesh.bbox[0])
+        raise InputError(
+            f"every piece is too small to be cast: the object is {size:.3g} mm long; check --units, or scale it up with --scale"
+        )
     for mould in moulds:
         write_mould(mould, folder / f"{mould.piece}.stl")
     return moulds
@@ -189,6 +197,7 @@ def _mould_facts(mould: CastingMould) -> dict[str, Any]:
         "file": f"mould/{mould.piece}.stl",
         "watertight": mould.watertight,
         "cavity_ml": mould.cavity_ml,
+        "lip_ml": mould.lip_ml,
         "size_mm": mould.size_mm,
         "wire_slots": [{"sensor": s.sensor, "terminal": s.terminal, "at_mm": s.at, "shared": s.shared} for s in mould.wire_slots],
     }

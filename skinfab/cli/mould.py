@@ -20,7 +20,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 
 def run(args: argparse.Namespace) -> int:
-    """Write the moulds, all or none."""
+    """Write the moulds, each whole or not at all; all are computed before the first is written."""
     from skinfab.document import load_skin
     from skinfab.errors import InputError
     from skinfab.files import explain_os_error

@@ -33,6 +33,13 @@ def positive(text: str) -> float:
     return value
 
 
+def seed(text: str) -> int:
+    """A whole number from zero up, for argparse."""
+    if not text.isdecimal():
+        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number from 0 up")
+    return int(text)
+
+
 def bound(text: str) -> float:
     """A bound on the mean d, for argparse: above the perfect 4."""
     value = positive(text)
@@ -66,7 +73,7 @@ def add_cut_options(p: argparse.ArgumentParser) -> None:
     p.add_argument("--complete", action="store_true", help="with --cuts: add automatic seams where those do not give good pieces")
     p.add_argument("--max-distortion", type=bound, default=4.05, metavar="D", help="mean d of a piece at most (default 4.05; 4 is perfect)")
     p.add_argument("--printer", metavar="NAME|FILE", help="printer profile, whose bed the pieces must fit")
-    p.add_argument("--seed", type=int, default=0, help="kept in the document; the same seed gives the same result")
+    p.add_argument("--seed", type=seed, default=0, help="kept in the document; the same seed gives the same result")
 
 
 def require_fitting_options(args: argparse.Namespace) -> None:

@@ -20,6 +20,7 @@ from skinfab.mesh.model import Mesh
 from skinfab.mesh.obj import parse_obj
 from skinfab.mesh.stl import parse_stl
 from skinfab.mesh.units import guess_units, mm_per, odd_size
+from skinfab.tolerances import LARGEST_OBJECT_MM, SMALLEST_OBJECT_MM
 
 FORMATS = (".obj", ".stl", ".ply", ".off", ".glb")
 
@@ -98,7 +99,10 @@ def load_mesh(path: str | Path, *, units: str | None = None, scale: float = 1.0)
         if units != "mm" or not guess.sure:
             notes.append(guess.reason)
     factor = mm_per(units) * scale
-    if odd := odd_size(float(np.ptp(V, axis=0).max()) * factor):
+    size = float(np.ptp(V, axis=0).max()) * factor
+    if not SMALLEST_OBJECT_MM <= size <= LARGEST_OBJECT_MM:
+        raise InputError(f"{path.name} is {size:.3g} mm long, which nothing can be computed with; check --units and --scale")
+    if odd := odd_size(size):
         notes.append(odd)
     mesh = Mesh(V * factor, F, path.stem)
     return Loaded(mesh, path.name, hashlib.sha256(data).hexdigest(), units, factor, tuple(notes))

@@ -208,10 +208,11 @@ def _moulds(report: Mapping[str, Any]) -> str:
             " x ".join(f"{side:.1f}" for side in m["size_mm"]) if "size_mm" in m else "not known",
             "yes" if m["watertight"] else "NO",
             f"{m['cavity_ml']:.2f}",
+            f"{m.get('lip_ml', 0.0):.2f}",
         ]
         for m in report["moulds"]
     ]
-    return _table(["file", "#outer size, mm", "watertight", "#cavity, ml"], rows)
+    return _table(["file", "#outer size, mm", "watertight", "#piece, ml", "#lips, ml"], rows)
 
 
 def _recipe(recipe: Mapping[str, Any]) -> str:

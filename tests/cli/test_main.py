@@ -179,3 +179,20 @@ def test_parser_holds_the_wanted_command_only(monkeypatch: pytest.MonkeyPatch) -
     monkeypatch.setattr("importlib.import_module", load)
     build_parser(["mould", "gcode"])
     assert asked == ["skinfab.cli.mould"]
+
+
+def test_a_swallowed_interrupt_comes_again() -> None:
+    """A KeyboardInterrupt that is raised inside a callback may be dropped there; the command ends all the same."""
+    body = (
+        "class Swallows:",
+        "    def __del__(self):",
+        "        os.kill(os.getpid(), 2)",
+        "        time.sleep(0.1)",
+        "Swallows()",
+        "print('swallowed', flush=True)",
+        "time.sleep(30)",
+    )
+    code = FRAME.format(body="\n    ".join(body))
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=20)
+    assert done.stdout == "swallowed\n"
+    assert done.returncode == 130 and done.stderr.splitlines()[-1].startswith("skinfab: interrupted")
