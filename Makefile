@@ -10,7 +10,7 @@ demo: setup
 
 test: lint
 	@tests/setup_octoprint.sh || { [ -z "$$CI" ] && echo "test: going on without OctoPrint; the tests that need it are skipped"; }
-	$(PYTHON) -m pytest -q -W error -n 2 --doctest-modules skinfab gcode tests
+	$(PYTHON) -m pytest -q -W error -n 2 --dist loadgroup --doctest-modules skinfab gcode tests
 
 lint: setup
 	$(PYTHON) -m ruff check .

@@ -3,15 +3,18 @@
 import json
 import math
 import re
+import subprocess
 from pathlib import Path
 from xml.etree import ElementTree
 
 import ezdxf
+import gcodeparser
 import jsonschema
 import numpy as np
 import shapely
 import trimesh
 
+OCTOPRINT = Path(__file__).parents[1] / ".venv-octoprint/bin/octoprint"
 ALWAYS = ("skin.skin", "report.json", "report.html", "flat.svg", "flat.dxf", "flat.obj", "preview.png")
 
 
@@ -93,6 +96,18 @@ def arc_faults(text: str) -> tuple[int, list[str]]:
     if modes != ["G90", "M83"]:
         faults.append(f"modes are {modes}")
     return arcs, faults
+
+
+def octoprint_ink_mm3(file: Path, *, e_per_mm3: float) -> float:
+    """The extrusion that OctoPrint finds in a G-code file."""
+    run = subprocess.run([OCTOPRINT, "analysis", "gcode", "--g90-extruder", file], capture_output=True, text=True, check=True, timeout=120)
+    found = re.search(r"extrusion_length:\n- (\S+)", run.stdout)
+    return float(found[1]) / e_per_mm3 if found else 0.0
+
+
+def gcodeparser_ink_mm3(text: str, *, e_per_mm3: float) -> float:
+    """The signed sum of E over the lines that gcodeparser reads."""
+    return sum(line.params.get("E", 0.0) for line in gcodeparser.parse_gcode_lines(text)) / e_per_mm3
 
 
 def cavity_ml(stl: Path, floor: float, depth: float) -> float:

@@ -31,7 +31,8 @@ PUBLISHED = {
 }
 
 
-@pytest.fixture(scope="module", params=PUBLISHED)
+# One worker makes an object and judges it: the others need not make it again.
+@pytest.fixture(scope="module", params=[pytest.param(name, marks=pytest.mark.xdist_group(name)) for name in PUBLISHED])
 def made(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> tuple[str, Path, dict]:
     name = request.param
     folder = tmp_path_factory.mktemp(name) / "out"
@@ -86,6 +87,17 @@ def test_gcode_is_fit_to_print(made: tuple[str, Path, dict], capfd: pytest.Captu
         assert parse(emit(program, printer)) == program
 
 
+def test_others_find_the_same_ink(made: tuple[str, Path, dict]) -> None:
+    _, folder, report = made
+    factor = {"e_per_mm3": load_printer().pump.e_per_mm3}
+    for entry in report["gcode"]:
+        text = (folder / entry["file"]).read_text()
+        assert results.gcodeparser_ink_mm3(text, **factor) == pytest.approx(entry["ink_mm3"], rel=1e-4)
+        if not results.OCTOPRINT.exists():
+            pytest.skip("OctoPrint is not installed: run tests/setup_octoprint.sh")
+        assert results.octoprint_ink_mm3(folder / entry["file"], **factor) == pytest.approx(entry["ink_mm3"], rel=0.01)
+
+
 def test_ink_adds_up(made: tuple[str, Path, dict]) -> None:
     _, _, report = made
     assert sum(s["ink_mm3"] for s in report["sensors"]) == pytest.approx(sum(g["ink_mm3"] for g in report["gcode"]), rel=1e-3)
@@ -133,6 +145,29 @@ def test_the_document_makes_the_same_gcode_again(tmp_path: Path) -> None:
     assert main(["gcode", str(tmp_path / "out/skin.skin"), "-o", str(tmp_path / "again")]) == 0
     for file in (tmp_path / "out/gcode").iterdir():
         assert (tmp_path / "again" / file.name).read_bytes() == file.read_bytes()
+
+
+def test_a_document_in_place_of_a_mesh(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    mesh, skin = str(ROOT / "meshes/cube.obj"), str(tmp_path / "cube.skin")
+    assert main(["segment", mesh, "-o", skin]) == 0
+    assert main(["make", skin, "-o", str(tmp_path / "from_skin")]) == 0
+    assert main(["make", mesh, "-o", str(tmp_path / "from_mesh")]) == 0
+    one, two = (tmp_path / name for name in ("from_skin", "from_mesh"))
+    for file in ("gcode/P1.gcode", "mould/P1.stl", "flat.obj", "flat.svg"):
+        assert (one / file).read_bytes() == (two / file).read_bytes()
+    assert main(["make", str(one / "skin.skin"), "-o", str(tmp_path / "again")]) == 0  # its sensors are kept
+    assert (tmp_path / "again/gcode/P1.gcode").read_bytes() == (one / "gcode/P1.gcode").read_bytes()
+    capfd.readouterr()
+    assert main(["make", skin, "-o", str(tmp_path / "x"), "--units", "m"]) == 2
+    assert "go with a mesh" in capfd.readouterr().err
+
+
+def test_cuts_by_hand(tmp_path: Path) -> None:
+    (tmp_path / "cuts.txt").write_text("0 1\n")
+    words = ["make", str(ROOT / "meshes/cube.obj"), "-o", str(tmp_path / "out"), "--cuts", str(tmp_path / "cuts.txt")]
+    assert main(words) == 1  # one edge opens nothing
+    assert main([*words, "--complete"]) == 0
+    assert results.read_report(tmp_path / "out")["distortion"]["mean"] == pytest.approx(4)
 
 
 def test_json_is_the_report_and_nothing_else(tmp_path: Path) -> None:
