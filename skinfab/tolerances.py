@@ -101,3 +101,12 @@ POINT_FRACTION = 0.05
 #: Objects outside this range are mistakes of units: squares and products of their lengths leave the range of numbers.
 SMALLEST_OBJECT_MM = 1e-9
 LARGEST_OBJECT_MM = 1e9
+
+#: Least cotangent weight of an as-rigid-as-possible step.
+RIGID_WEIGHT = 1e-3
+
+#: Prescribed turning angles may miss 2 pi by this much: written with six decimals, they do.
+TURNING_SUM_RAD = 1e-5
+
+#: Target shapes are reached when no boundary vertex moves by more than this fraction of the shape's size.
+TARGET_MOVE = 1e-10

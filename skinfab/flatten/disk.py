@@ -8,11 +8,18 @@ from numpy.typing import NDArray
 from skinfab.flatten.bff import flatten_disk
 from skinfab.flatten.distortion import best_scale, singular_values
 from skinfab.flatten.isometric import IsometricSolver
+from skinfab.flatten.rigid_start import rigid_steps
 from skinfab.flatten.tutte import tutte_embedding
 from skinfab.mesh.topology import Topology
 from skinfab.tolerances import FLAT_START, NEWTON_DECREASE
 
 FloatArray = NDArray[np.float64]
+
+#: From BFF's layout two steps come as near to the least d as two or three of Newton's, at a quarter of the cost.
+_RIGID_STEPS = 2
+
+#: On fewer triangles a factorisation costs too little to be saved.
+_RIGID_FROM = 5000
 
 
 def flatten_isometric(
@@ -23,7 +30,7 @@ def flatten_isometric(
     tolerance: float = NEWTON_DECREASE,
     hopeless_above: float = np.inf,
 ) -> FloatArray:
-    """BFF, scaled for the least d, untangled where it flipped, refined by Newton steps.
+    """BFF, scaled for the least d, untangled where it flipped, brought near by rigid steps, refined by Newton steps.
 
     Parameters
     ----------
@@ -46,11 +53,18 @@ def flatten_isometric(
     """
     topology = topology or Topology(F)
     uv = flatten_disk(V, F, topology=topology)
-    solver = IsometricSolver(V, F)
     uv = uv * best_scale(V, F, uv)
-    s = singular_values(V, F, uv)
-    if not np.isfinite(s).all() or s[:, 1].min() < FLAT_START * s[:, 0].max():
+    if not _open(V, F, uv):
         # A nearly collapsed triangle stalls the line search as surely as a flipped one.
         uv = tutte_embedding(V, F, topology=topology)
         uv = uv * best_scale(V, F, uv)
-    return solver.refine(uv, tolerance=tolerance, hopeless_above=hopeless_above).UV
+    if len(F) >= _RIGID_FROM:
+        near = rigid_steps(V, F, uv, steps=_RIGID_STEPS)
+        uv = near if _open(V, F, near) else uv
+    return IsometricSolver(V, F).refine(uv, tolerance=tolerance, hopeless_above=hopeless_above).UV
+
+
+def _open(V: FloatArray, F: NDArray[np.int64], uv: FloatArray) -> bool:
+    """No triangle is flipped or nearly collapsed."""
+    s = singular_values(V, F, uv)
+    return bool(np.isfinite(s).all() and s[:, 1].min() >= FLAT_START * s[:, 0].max())

@@ -86,7 +86,7 @@ class IsometricSolver:
 
     def __init__(self, V: FloatArray, F: NDArray[np.int64]) -> None:
         self.F, self.n = F, len(V)
-        rest = _rest_triangles(V, F)
+        rest = rest_triangles(V, F)
         twice_area = rest[:, 0, 0] * rest[:, 1, 1]
         self.weight = twice_area / twice_area.sum()
         self.gradients = _basis_gradients(rest, twice_area)
@@ -179,7 +179,7 @@ class IsometricSolver:
         return u, start
 
 
-def _rest_triangles(V: FloatArray, F: NDArray[np.int64]) -> FloatArray:
+def rest_triangles(V: FloatArray, F: NDArray[np.int64]) -> FloatArray:
     """Each triangle in its own plane, (m, 2, 2) mm; one without a shape gets the least that can be computed with."""
     rest = local_triangles(V, F)
     shapeless = ~shaped_areas(V, F)[1]
