@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
+from scipy.sparse import coo_array, csr_array
 from scipy.sparse.csgraph import connected_components
 
 IntArray = NDArray[np.int64]
@@ -42,23 +42,27 @@ class Topology:
     def __init__(self, F: IntArray) -> None:
         self.F = F = np.ascontiguousarray(F, dtype=np.int64)
         count = len(F)
-        half = np.concatenate([F[:, [0, 1]], F[:, [1, 2]], F[:, [2, 0]]])
-        low, high = half.min(axis=1), half.max(axis=1)
+        corner = F.T.ravel()
+        next_corner = F[:, [1, 2, 0]].T.ravel()
+        low, high = np.minimum(corner, next_corner), np.maximum(corner, next_corner)
+        self._n = n = int(F.max()) + 1 if count else 0
+        order = _order_of_pairs(low, high, n)
+        low, high = low[order], high[order]
+        new = np.ones(3 * count, dtype=bool)
+        new[1:] = (low[1:] != low[:-1]) | (high[1:] != high[:-1])
+        first = np.flatnonzero(new)
+        self.edge_count = np.diff(first, append=3 * count)
+        self.E = np.column_stack([low[first], high[first]])
         # int64 keys: u * n + v overflows 32 bits above 46k vertices.
-        n = int(F.max()) + 1 if count else 0
-        keys, inverse, self.edge_count = np.unique(low * n + high, return_inverse=True, return_counts=True)
-        self._keys, self._n = keys, n
-        self.E = np.column_stack([keys // max(n, 1), keys % max(n, 1)])
-        self.FE = inverse.reshape(3, count).T.copy()
-        order = np.argsort(inverse, kind="stable")
-        first = np.concatenate([[0], np.cumsum(self.edge_count)[:-1]]).astype(np.int64) if count else np.zeros(0, np.int64)
-        self.EF = np.full((len(keys), 2), -1)
-        self.EC = np.full((len(keys), 2), -1)
-        one = order[first]
-        self.EF[:, 0], self.EC[:, 0] = one % max(count, 1), one // max(count, 1)
+        self._keys = self.E[:, 0] * n + self.E[:, 1]
+        edge = np.empty(3 * count, dtype=np.int64)
+        edge[order] = np.cumsum(new) - 1
+        self.FE = edge.reshape(3, count).T.copy()
+        self.EF = np.full((len(first), 2), -1)
+        self.EC = np.full((len(first), 2), -1)
+        self.EC[:, 0], self.EF[:, 0] = np.divmod(order[first], max(count, 1))
         paired = self.edge_count >= 2
-        two = order[first[paired] + 1]
-        self.EF[paired, 1], self.EC[paired, 1] = two % max(count, 1), two // max(count, 1)
+        self.EC[paired, 1], self.EF[paired, 1] = np.divmod(order[first[paired] + 1], max(count, 1))
 
     @property
     def is_boundary(self) -> NDArray[np.bool_]:
@@ -73,7 +77,9 @@ class Topology:
     @cached_property
     def used_vertices(self) -> IntArray:
         """Vertices that some face uses, sorted."""
-        return np.unique(self.F)
+        used = np.zeros(self._n, dtype=bool)
+        used[self.F] = True
+        return np.flatnonzero(used)
 
     @property
     def euler(self) -> int:
@@ -92,13 +98,29 @@ class Topology:
 
     def face_components(self, cut: NDArray[np.bool_] | None = None) -> tuple[int, IntArray]:
         """Number of face groups joined across edges, and each face's group (m,); `cut` edges do not join."""
-        joins = self.EF[:, 1] >= 0
-        if cut is not None:
-            joins &= ~cut
-        a, b = self.EF[joins].T
+        if cut is None:
+            return self._components
+        return self._joined_over(~cut)
+
+    @cached_property
+    def _components(self) -> tuple[int, IntArray]:
+        count, label = self._joined_over(np.ones(len(self.E), dtype=bool))
+        label.flags.writeable = False  # handed out to everyone who asks
+        return count, label
+
+    def _joined_over(self, edges: NDArray[np.bool_]) -> tuple[int, IntArray]:
+        a, b = self.EF[edges & (self.EF[:, 1] >= 0)].T
         graph = coo_array((np.ones(len(a), dtype=np.int8), (a, b)), shape=(len(self.F), len(self.F)))
         count, label = connected_components(graph, directed=False)
         return int(count), label.astype(np.int64)
+
+    @cached_property
+    def is_oriented_manifold(self) -> bool:
+        """Two faces at most at each edge, wound alike; one fan of faces at each vertex; no two faces with the same corners.
+
+        False, too, where a vertex has more than `_MOST_STEPS` faces: nothing is said of such a mesh.
+        """
+        return _is_oriented_manifold(self)
 
     @cached_property
     def boundary_loops(self) -> list[IntArray]:
@@ -139,3 +161,58 @@ class Topology:
                 return next(j for j in options if int(face[j]) == f)
             f = int(self.EF[e, 1] if self.EF[e, 0] == f else self.EF[e, 0])
         return options[0]
+
+
+# Below this many pairs one sort is faster than two rounds of counting.
+_FEW_PAIRS = 4096
+# Steps around all vertices at once: a mesh with larger fans takes the general way.
+_MOST_STEPS = 64
+
+
+def _order_of_pairs(low: IntArray, high: IntArray, n: int) -> IntArray:
+    """The stable order of the pairs of numbers below `n` by `low`, then `high`."""
+    if len(low) < _FEW_PAIRS or n > 4 * len(low) or low.min() < 0:
+        return np.argsort(low * n + high, kind="stable")
+    # Radix sort: transposing a sparse matrix of one entry a row counts the columns, and keeps the rows' order.
+    by_high = _order_by_counting(high, n)
+    return by_high[_order_by_counting(low[by_high], n)].astype(np.int64)
+
+
+def _order_by_counting(numbers: IntArray, n: int) -> IntArray:
+    count = len(numbers)
+    rows = csr_array((np.zeros(count, dtype=np.int8), numbers.astype(np.int32), np.arange(count + 1, dtype=np.int32)), shape=(count, n))
+    order: IntArray = rows.tocsc().indices
+    return order
+
+
+def _is_oriented_manifold(top: Topology) -> bool:
+    if not len(top.F) or top.edge_count.max() > 2 or (top.E[:, 0] == top.E[:, 1]).any():
+        return False
+    # Half-edge 3 f + c starts at corner c of face f.
+    flat = top.F.ravel()
+    edge_half = 3 * top.EF + top.EC
+    two = top.edge_count == 2
+    here, there = edge_half[two].T
+    if (flat[here] == flat[there]).any():  # run along the edge in the same direction
+        return False
+    before = np.arange(len(flat)).reshape(-1, 3)[:, [2, 0, 1]].ravel()
+    if (flat[before[here]] == flat[before[there]]).any():  # the same third corner
+        return False
+    twin = np.full(len(flat), -1)
+    twin[here], twin[there] = there, here
+    following = twin[before]  # the next corner around the same vertex
+    start = np.full(top._n, -1)
+    start[flat] = np.arange(len(flat))
+    border = edge_half[~two, 0]
+    start[flat[border]] = border  # where nothing comes before
+    # Walk around all vertices at once: with one fan at each, every corner is met just once.
+    first = at = start[start >= 0]
+    met = 0
+    for _ in range(_MOST_STEPS):
+        met += len(at)
+        at = following[at]
+        going = (at >= 0) & (at != first)
+        first, at = first[going], at[going]
+        if not len(at):
+            return met == len(flat)
+    return False

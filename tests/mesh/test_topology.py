@@ -118,3 +118,48 @@ def test_no_faces() -> None:
     assert (len(topology.E), topology.euler, topology.boundary_loops) == (0, 0, [])
     assert topology.edge_ids(np.array([[0, 1]])).tolist() == [-1]
     assert topology.face_components()[0] == 0
+
+
+def test_many_faces_are_ordered_as_few_are() -> None:
+    """Above some size the edges are sorted by counting; the tables must not show it."""
+    _, F = shapes.random_disk(5, 900)
+    rng = np.random.default_rng(5)
+    F = rng.permutation(F[rng.random(len(F)) < 0.9])
+    assert 3 * len(F) > 4096
+    topology = Topology(F)
+    half = np.sort(np.concatenate([F[:, [0, 1]], F[:, [1, 2]], F[:, [2, 0]]]), axis=1)
+    E, first, inverse, count = np.unique(half, axis=0, return_index=True, return_inverse=True, return_counts=True)
+    np.testing.assert_array_equal(topology.E, E)
+    np.testing.assert_array_equal(topology.edge_count, count)
+    np.testing.assert_array_equal(topology.FE, inverse.reshape(3, -1).T)
+    np.testing.assert_array_equal(topology.EF[:, 0], first % len(F))
+    np.testing.assert_array_equal(topology.EC[:, 0], first // len(F))
+    # A vertex number that is none, as in a mesh not yet looked over, must not reach the counting sort.
+    assert len(Topology(np.where(F == 7, -1, F)).E) == len(E)
+
+
+def test_oriented_manifold() -> None:
+    for V, F in (shapes.wavy(), shapes.sphere(), shapes.torus(), shapes.holed(), shapes.cube(3)):
+        assert Topology(F).is_oriented_manifold
+        again = np.random.default_rng(1).permutation(F)
+        assert Topology(again).is_oriented_manifold
+        assert not Topology(np.vstack([F, [[0, len(V), len(V) + 1]]])).is_oriented_manifold  # a second fan at vertex 0
+        assert not Topology(np.vstack([F, [F[3]]])).is_oriented_manifold  # a face twice
+        assert not Topology(np.vstack([F[:5, ::-1], F[5:]])).is_oriented_manifold  # some wound the other way
+
+
+@pytest.mark.parametrize(
+    "F",
+    [
+        [[0, 1, 2], [2, 1, 0]],  # both sides of one triangle
+        [[0, 1, 1], [0, 1, 2]],
+        [[0, 1, 2], [1, 0, 3], [0, 1, 4]],
+        [[0, 1, 2], [0, 3, 4]],
+        # Two tetrahedra that touch at vertex 0: no edge shows it.
+        [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3], [0, 5, 4], [0, 4, 6], [4, 5, 6], [5, 0, 6]],
+        np.zeros((0, 3), dtype=np.int64),
+    ],
+    ids=["flap", "corner twice", "fin", "bow-tie", "tips", "nothing"],
+)
+def test_not_an_oriented_manifold(F) -> None:
+    assert not Topology(np.array(F)).is_oriented_manifold
