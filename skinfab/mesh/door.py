@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
+from skinfab.mesh.intact import is_intact
 from skinfab.mesh.io import Loaded, load_mesh
 from skinfab.mesh.model import Mesh
 from skinfab.mesh.repair import clean, repair, require_usable
@@ -32,8 +33,11 @@ def load_usable(path: str | Path, *, units: str | None = None, scale: float = 1.
         The file cannot be read, or the mesh not be used: names the first offending element.
     """
     loaded = load_mesh(path, units=units, scale=scale)
-    mesh, done = (repair if mend else clean)(loaded.mesh)
-    require_usable(mesh)
+    mesh = loaded.mesh
+    done: list[str] = []
+    if mend or not is_intact(mesh):
+        mesh, done = (repair if mend else clean)(mesh)
+        require_usable(mesh)
     return replace(loaded, mesh=mesh, notes=(*loaded.notes, *done, *([] if mend else _small_holes(mesh))))
 
 
