@@ -69,13 +69,13 @@ def run(args: argparse.Namespace) -> int:
     pieces, distortions = _flatten(args, loaded.mesh)
     seconds = time.perf_counter() - began
     _require_sound(args.method, pieces, distortions)
-    figures = _figures(args.method, loaded.mesh, pieces, distortions, seconds)
     write_flat_obj(loaded.mesh, pieces, sheet_offsets(pieces), args.output)
     if args.json:
+        figures = _figures(args.method, loaded.mesh, pieces, distortions, seconds)
         atomic_write(args.json, json.dumps(figures, indent=1, allow_nan=False) + "\n")
     for line in steps.piece_lines(pieces, distortions):
         print(line)
-    mean, most = figures["distortion"]["mean"], figures["distortion"]["max"]
+    mean, most = _overall(loaded.mesh, pieces, distortions)
     print(f"{args.output}: {steps.counted(len(pieces), 'piece')} by {args.method} in {seconds:.2f} s, d mean {mean:.4f}, max {most:.3f}")
     if mean > args.max_distortion:
         steps.say(
@@ -86,15 +86,11 @@ def run(args: argparse.Namespace) -> int:
 
 def _flatten(args: argparse.Namespace, mesh: Mesh) -> tuple[list[Piece], list[Distortion]]:
     from skinfab.flatten.methods import method
-    from skinfab.progress import terminal_progress
-    from skinfab.seams.auto import find_seams
-    from skinfab.seams.cones import flatten_with_cones
     from skinfab.seams.cut import open_pieces
-    from skinfab.seams.finish import finish
-    from skinfab.seams.judge import Limits
-    from skinfab.seams.pieces import to_pieces
 
     if args.method == "bff-cones":
+        from skinfab.seams.cones import flatten_with_cones
+
         wanted = args.cones or "auto"
         listed = _vertices(wanted) if isinstance(wanted, list) else None
         count = wanted if isinstance(wanted, int) else None
@@ -107,15 +103,25 @@ def _flatten(args: argparse.Namespace, mesh: Mesh) -> tuple[list[Piece], list[Di
             pieces, distortions = _as_pieces(mesh, flat)
             if not any(d.overlap_mm2 > 0 or d.flipped for d in distortions):
                 return pieces, distortions
-        steps.say(["the surface cannot lie flat in one go, so it is cut automatically"])
-        with terminal_progress() as progress:
-            limits = Limits(mean=args.max_distortion)
-            seams = find_seams(mesh, limits, progress=lambda done: progress(done, "cutting and flattening"))
-            seams = finish(mesh, seams, limits)
-        named = to_pieces(mesh, seams.pieces)
-        by_first_face = {int(p.faces[0]): v.distortion for p, v in seams.pieces}
-        return list(named), [by_first_face[int(p.faces[0])] for p in named]
+        return _cut(mesh, args.max_distortion)
     return _as_pieces(mesh, [(p.faces, p.vertices, p.F, method(args.method)(mesh.V[p.vertices], p.F)) for p in opened])
+
+
+def _cut(mesh: Mesh, max_distortion: float) -> tuple[list[Piece], list[Distortion]]:
+    from skinfab.progress import terminal_progress
+    from skinfab.seams.auto import find_seams
+    from skinfab.seams.finish import finish
+    from skinfab.seams.judge import Limits
+    from skinfab.seams.pieces import to_pieces
+
+    steps.say(["the surface cannot lie flat in one go, so it is cut automatically"])
+    with terminal_progress() as progress:
+        limits = Limits(mean=max_distortion)
+        seams = find_seams(mesh, limits, progress=lambda done: progress(done, "cutting and flattening"))
+        seams = finish(mesh, seams, limits)
+    named = to_pieces(mesh, seams.pieces)
+    by_first_face = {int(p.faces[0]): v.distortion for p, v in seams.pieces}
+    return list(named), [by_first_face[int(p.faces[0])] for p in named]
 
 
 def _vertices(numbers: list[int]) -> NDArray[np.int64]:
@@ -146,6 +152,16 @@ def _require_sound(method: str, pieces: list[Piece], distortions: list[Distortio
             raise RefusedError(f"laid flat by {method}, {piece.id} covers {d.overlap_mm2:.3g} mm^2 twice; use --method auto, which cuts it")
 
 
+def _overall(mesh: Mesh, pieces: list[Piece], distortions: list[Distortion]) -> tuple[float, float]:
+    """Mean d over the object's area, and the largest."""
+    import numpy as np
+
+    if len(pieces) == 1:
+        return distortions[0].mean, distortions[0].max
+    areas = [mesh.face_areas[p.faces].sum() for p in pieces]
+    return float(np.average([d.mean for d in distortions], weights=areas)), max(d.max for d in distortions)
+
+
 def _figures(method: str, mesh: Mesh, pieces: list[Piece], distortions: list[Distortion], seconds: float) -> dict[str, Any]:
     import numpy as np
 
@@ -158,6 +174,7 @@ def _figures(method: str, mesh: Mesh, pieces: list[Piece], distortions: list[Dis
         s = singular_values(piece.V(mesh), piece.F, piece.UV) * np.sqrt(area / piece.area)
         real = mesh.face_areas[piece.faces] > 0
         kept.append(float(np.average(distortion_of(s)[real], weights=mesh.face_areas[piece.faces][real])))
+    mean, most = _overall(mesh, pieces, distortions)
     return {
         "method": method,
         "n_faces": len(mesh.F),
@@ -173,9 +190,9 @@ def _figures(method: str, mesh: Mesh, pieces: list[Piece], distortions: list[Dis
             for p, d, k in zip(pieces, distortions, kept, strict=True)
         ],
         "distortion": {
-            "mean": float(np.average([d.mean for d in distortions], weights=areas)),
+            "mean": mean,
             "mean_at_kept_area": float(np.average(kept, weights=areas)),
-            "max": max(d.max for d in distortions),
+            "max": most,
         },
         "flatten_s": seconds,
     }

@@ -68,6 +68,8 @@ def open_pieces(mesh: Mesh, cut: BoolArray, *, faces: IntArray | None = None) ->
     (1, 2)
     """
     topology = mesh.topology
+    if faces is None and not (cut & ~topology.is_boundary).any() and topology.is_oriented_manifold and topology.face_components()[0] == 1:
+        return [_whole(mesh)]
     m = len(mesh.F)
     chosen = np.arange(m) if faces is None else np.sort(faces)
     local = np.full(m + 1, -1)
@@ -95,6 +97,18 @@ def open_pieces(mesh: Mesh, cut: BoolArray, *, faces: IntArray | None = None) ->
         _, first, inverse = np.unique(corner[mine], return_index=True, return_inverse=True)
         pieces.append(OpenPiece(chosen[mine], F[mine].ravel()[first], inverse.reshape(-1, 3).astype(np.int64)))
     return pieces
+
+
+def _whole(mesh: Mesh) -> OpenPiece:
+    """All of a mesh in one piece with nothing to open: its vertices, numbered as its corners meet them."""
+    corner = mesh.F.ravel()
+    place = np.arange(len(corner))
+    first = np.empty(len(mesh.V), dtype=np.int64)
+    first[corner[::-1]] = place[::-1]
+    vertices = corner[first[corner] == place]
+    number = np.empty(len(mesh.V), dtype=np.int64)
+    number[vertices] = np.arange(len(vertices))
+    return OpenPiece(np.arange(len(mesh.F)), vertices, number[mesh.F])
 
 
 def mesh_edges(mesh: Mesh, piece: OpenPiece, edges: IntArray) -> IntArray:

@@ -124,3 +124,14 @@ def test_seams_inside_a_surface() -> None:
     assert opened(11, 12, 13) == (1, 2)  # two make a slit
     assert opened(10, 11, 12) == (2, 1)  # from the boundary: a dart, a vertex more for each that is not its tip
     assert seam_length(mesh, mesh.topology.is_boundary) == 0
+
+
+@pytest.mark.parametrize("name", sorted(SURFACES))
+def test_nothing_to_open_gives_what_opening_would(name: str) -> None:
+    V, F = SURFACES[name]
+    F = np.random.default_rng(4).permutation(F)
+    mesh = Mesh(np.vstack([V, [[9.0, 9.0, 9.0]]]), F)  # one vertex that no face uses
+    (quick,) = open_pieces(mesh, mesh.topology.is_boundary)
+    (general,) = open_pieces(mesh, mesh.topology.is_boundary, faces=np.arange(len(F)))
+    for field in ("faces", "vertices", "F"):
+        np.testing.assert_array_equal(getattr(quick, field), getattr(general, field))
