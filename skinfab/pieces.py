@@ -61,9 +61,12 @@ class Piece:
 
     @cached_property
     def area(self) -> float:
-        """Area of the flat shape, mm^2."""
-        x, y = self.outline.T
-        return float(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1))) / 2
+        """Area of the flat shape without its holes, mm^2."""
+        total = 0.0
+        for loop in self.topology.boundary_loops:
+            x, y = self.UV[loop].T
+            total += float(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1))) / 2
+        return total
 
     def V(self, mesh: Mesh) -> NDArray[np.float64]:
         """Where the piece's vertices lie on the object, (p, 3) mm."""

@@ -1,27 +1,207 @@
 """Boundary first flattening of a disk (Sawhney and Crane 2017), from one Cholesky factorisation.
 
-The factor of the interior block of the cotangent Laplacian serves all three steps: the scale factors
-(Dirichlet solve), the boundary's new curvature (Dirichlet-to-Neumann map) and the extension of the
-boundary curve into the interior (two harmonic functions). Numbers in comments are the paper's sections.
+The factor of the interior block of the cotangent Laplacian serves every step: the scale factors (Dirichlet
+solve), the boundary's new curvature (Dirichlet-to-Neumann map, and back) and the extension of the boundary
+curve into the interior (two harmonic functions). Numbers in comments are the paper's sections.
 """
 
 from __future__ import annotations
+
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csc_array
 
 from skinfab.errors import InputError
+from skinfab.flatten.bff_curve import close_curve, scaled_lengths, vertex_scale
+from skinfab.flatten.bff_target import fit_circle, fit_curve
 from skinfab.flatten.distortion import best_scale
 from skinfab.flatten.laplacian import intrinsic
+from skinfab.flatten.steklov import NeumannToDirichlet
 from skinfab.linalg import Cholesky
 from skinfab.mesh.topology import Topology
+from skinfab.tolerances import TURNING_SUM_RAD
 
 FloatArray = NDArray[np.float64]
 
 
+class BffSolver:
+    """Conformal flattenings of one disk: factored once, laid out for one boundary after the other.
+
+    What is said of the boundary is given in the order of `boundary`, counter-clockwise; edge k runs from its
+    vertex k to k + 1.
+
+    Parameters
+    ----------
+    V : (n, 3) float64, mm
+    F : (m, 3) int64
+        A disk: one component, one boundary loop, Euler number 1; every vertex in use.
+    topology : Topology, optional
+        Of `F`, where it is at hand.
+
+    Attributes
+    ----------
+    boundary : (b,) int64
+    lengths_mm : (b,) float
+        Of the boundary edges on the object.
+
+    Raises
+    ------
+    InputError
+        The mesh is not a disk, or a coordinate is not finite.
+
+    Examples
+    --------
+    >>> V = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0.5, 0.5, 0]])
+    >>> F = np.array([[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]])
+    >>> solver = BffSolver(V, F)
+    >>> uv = solver.free()
+    >>> float(np.linalg.norm(uv[2] - uv[0]).round(9)), solver.factorisations, solver.solves
+    (1.414213562, 1, 2)
+    >>> np.linalg.norm(solver.disk(), axis=1).round(9).tolist()
+    [1.0, 1.0, 1.0, 1.0, 0.0]
+    """
+
+    def __init__(self, V: FloatArray, F: NDArray[np.int64], *, topology: Topology | None = None) -> None:
+        self.boundary = loop = require_disk(topology or Topology(F), len(V))
+        if not np.isfinite(V).all():
+            wrong = int(np.flatnonzero(~np.isfinite(V).all(axis=1))[0])
+            raise InputError(f"vertex {wrong} has a coordinate that is not a finite number; mend it in the mesh")
+        corners = intrinsic(V, F)
+        self.lengths_mm = np.linalg.norm(V[np.roll(loop, -1)] - V[loop], axis=1)
+        inner = np.ones(len(V), dtype=bool)
+        inner[loop] = False
+        self._free = free = np.flatnonzero(inner)
+        L = corners.stiffness()
+        self._L_bf, self._L_bb = csc_array(L[loop][:, free]), csc_array(L[loop][:, loop])
+        self._cholesky = Cholesky(csc_array(L[free][:, free])) if len(free) else None
+        self._curvature = np.where(inner, 2 * np.pi, np.pi) - corners.angle_sum
+
+    @property
+    def factorisations(self) -> int:
+        """How many sparse factorisations were done: 1, or 0 without inner vertices."""
+        return self._cholesky.factorisations if self._cholesky else 0
+
+    @property
+    def solves(self) -> int:
+        """How many times the factor was used so far; several right-hand sides at once count as one."""
+        return self._cholesky.solves if self._cholesky else 0
+
+    def free(self) -> FloatArray:
+        """Scale factor 1 along the boundary: of all conformal flattenings the one with the least area distortion (4.2); (n, 2) mm."""
+        return self.scale(np.zeros(len(self.boundary)))
+
+    def scale(self, u: FloatArray) -> FloatArray:
+        """Log scale factors u (b,) along the boundary; (n, 2) mm. Two solves."""
+        u = self._checked(u, "scale factors")
+        return self._extended(close_curve(scaled_lengths(self.lengths_mm, u), self._turning(u)))
+
+    def lengths(self, target_lengths: FloatArray) -> FloatArray:
+        """Boundary edges of these lengths (b,) mm, up to what closing the curve takes; (n, 2) mm. Two solves.
+
+        Raises
+        ------
+        InputError
+            Not one length for each boundary edge, or one that is not positive; the object's own such edge included.
+        """
+        target = self._checked(target_lengths, "lengths")
+        for length, whose in ((target, "the target lengths"), (self.lengths_mm, "the mesh")):
+            if not (length > 0).all():
+                k = int(np.flatnonzero(~(length > 0))[0])
+                raise InputError(f"boundary edge {k} has length {length[k]:g} mm in {whose}; every length must be positive")
+        return self._extended(close_curve(target, self._turning(vertex_scale(self.lengths_mm, target))))
+
+    def angles(self, turning: FloatArray) -> FloatArray:
+        """Turning angles (b,) rad at the boundary vertices, 2 pi together: 0 straight on, pi / 2 a square's corner; (n, 2) mm.
+
+        The size is the one that keeps the boundary's scale factors 1 in the mean.
+
+        Raises
+        ------
+        InputError
+            Not one angle for each boundary vertex, or their sum is not 2 pi.
+        """
+        wanted = self._checked(turning, "turning angles")
+        if not abs(wanted.sum() - 2 * np.pi) <= TURNING_SUM_RAD:
+            raise InputError(f"the turning angles sum to {wanted.sum():.9g} rad; a closed curve turns by 2 pi, so scale or shift them")
+        u = self.scale_of(wanted)
+        return self._extended(close_curve(scaled_lengths(self.lengths_mm, u), wanted))
+
+    def curve(self, target_points: FloatArray) -> FloatArray:
+        """The boundary laid on a closed curve (6.3): `boundary[0]` on its first point, the others where the map is most nearly conformal.
+
+        Parameters
+        ----------
+        target_points : (k, 2) float, mm
+            A simple polygon, counter-clockwise, not repeated at the end.
+
+        Returns
+        -------
+        (n, 2) float64, mm
+            At the target's own size and place.
+
+        Raises
+        ------
+        InputError
+            Fewer than three points, one that is not finite, or a curve that does not run counter-clockwise.
+        """
+        target = np.asarray(target_points, dtype=np.float64)
+        if target.ndim != 2 or target.shape[1] != 2 or len(target) < 3 or not np.isfinite(target).all():
+            raise InputError(f"a target curve is an array of three or more finite points (k, 2); this has the shape {target.shape}")
+        area = (target[:, 0] * np.roll(target[:, 1], -1) - np.roll(target[:, 0], -1) * target[:, 1]).sum() / 2
+        if not area > 0:
+            raise InputError(f"the target curve encloses {area:g} mm^2; give its points counter-clockwise, without crossing itself")
+        return self._extended(fit_curve(self.lengths_mm, self.scale_of, target))
+
+    def disk(self) -> FloatArray:
+        """The unit disk (6.2), (n, 2) without unit: every boundary vertex on the circle about (0, 0).
+
+        Of the conformal maps onto the disk, which differ by a Moebius transformation, the one whose boundary scale
+        factors are balanced: u has no first harmonic around the circle. `boundary[0]` lies at (1, 0).
+        """
+        return self._extended(fit_circle(self.lengths_mm, self.scale_of))
+
+    def scale_of(self, turning: FloatArray) -> FloatArray:
+        """(b,) log scale factors, of mean zero, that make the boundary turn by (b,) rad (Neumann to Dirichlet, 4.1)."""
+        return self._to_dirichlet(turning - self._free_turning)
+
+    @cached_property
+    def _to_dirichlet(self) -> NeumannToDirichlet:
+        return NeumannToDirichlet(self._L_bb, self._L_bf, self._cholesky)
+
+    @cached_property
+    def _free_turning(self) -> FloatArray:
+        return self._turning(np.zeros(len(self.boundary)))
+
+    def _turning(self, u: FloatArray) -> FloatArray:
+        """New boundary curvature: the old one with the normal derivative of u (4.1)."""
+        slope = self._L_bb @ u
+        if self._cholesky is not None:
+            slope = slope + self._L_bf @ self._cholesky.solve(-self._curvature[self._free] - self._L_bf.T @ u)
+        turning: FloatArray = self._curvature[self.boundary] + slope
+        return turning
+
+    def _extended(self, curve: FloatArray) -> FloatArray:
+        """Boundary curve and the harmonic functions inside (4.4)."""
+        uv = np.empty((len(self._curvature), 2))
+        uv[self.boundary] = curve
+        if self._cholesky is not None:
+            uv[self._free] = self._cholesky.solve(-(self._L_bf.T @ curve))
+        return uv
+
+    def _checked(self, values: FloatArray, what: str) -> FloatArray:
+        values = np.asarray(values, dtype=np.float64)
+        b = len(self.boundary)
+        if values.shape != (b,) or not np.isfinite(values).all():
+            raise InputError(
+                f"{what} are {b} finite numbers, one for each vertex or edge of the boundary; this has the shape {values.shape}"
+            )
+        return values
+
+
 def flatten_disk(V: FloatArray, F: NDArray[np.int64], *, scale: FloatArray | None = None, topology: Topology | None = None) -> FloatArray:
-    """Conformal flattening of a disk whose boundary scale factors are given.
+    """Conformal flattening of a disk whose boundary scale factors are given: `BffSolver` for one use.
 
     Parameters
     ----------
@@ -29,8 +209,7 @@ def flatten_disk(V: FloatArray, F: NDArray[np.int64], *, scale: FloatArray | Non
     F : (m, 3) int64
         A disk: one component, one boundary loop, Euler number 1; every vertex in use.
     scale : (n,) float, optional
-        Log scale factors u; only the boundary's are read. Zero, the default, is the free boundary: of all
-        conformal flattenings the one with the least area distortion (section 4.2).
+        Log scale factors u; only the boundary's are read. Zero, the default, is the free boundary.
     topology : Topology, optional
         Of `F`, where it is at hand.
 
@@ -51,37 +230,8 @@ def flatten_disk(V: FloatArray, F: NDArray[np.int64], *, scale: FloatArray | Non
     >>> float(np.linalg.norm(uv[2] - uv[0]).round(9))
     1.414213562
     """
-    topology = topology or Topology(F)
-    loop = require_disk(topology, len(V))
-    if not np.isfinite(V).all():
-        wrong = int(np.flatnonzero(~np.isfinite(V).all(axis=1))[0])
-        raise InputError(f"vertex {wrong} has a coordinate that is not a finite number; mend it in the mesh")
-    corners = intrinsic(V, F)
-    u = np.zeros(len(V)) if scale is None else scale
-    inner = np.ones(len(V), dtype=bool)
-    inner[loop] = False
-    free = np.flatnonzero(inner)
-
-    L = corners.stiffness()
-    L_ff, L_bf = L[free][:, free], L[loop][:, free]
-    cholesky = Cholesky(csc_array(L_ff)) if len(free) else None
-    curvature = np.where(inner, 2 * np.pi, np.pi) - corners.angle_sum
-
-    # New boundary curvature: the old one less the normal derivative of u (4.1).
-    u_b = u[loop]
-    if cholesky is None:
-        slope = L[loop][:, loop] @ u_b
-    else:
-        u_i = cholesky.solve(-curvature[free] - L_bf.T @ u_b)
-        slope = L_bf @ u_i + L[loop][:, loop] @ u_b
-    turning = curvature[loop] + slope
-
-    curve = _close_curve(V, loop, turning, u_b)
-    uv = np.empty((len(V), 2))
-    uv[loop] = curve
-    if cholesky is not None:
-        uv[free] = cholesky.solve(-(L_bf.T @ curve))
-    return uv
+    solver = BffSolver(V, F, topology=topology)
+    return solver.free() if scale is None else solver.scale(scale[solver.boundary])
 
 
 def flatten_scaled(V: FloatArray, F: NDArray[np.int64]) -> FloatArray:
@@ -101,15 +251,3 @@ def require_disk(topology: Topology, n_vertices: int) -> NDArray[np.int64]:
             f"{topology.euler} and {unused} unused vertices; cut it first (skinfab segment)"
         )
     return loops[0]
-
-
-def _close_curve(V: FloatArray, loop: NDArray[np.int64], turning: FloatArray, u: FloatArray) -> FloatArray:
-    """The closed polygon with these turning angles whose edge lengths are nearest to the scaled ones (4.3)."""
-    length = np.linalg.norm(V[np.roll(loop, -1)] - V[loop], axis=1) * np.exp((u + np.roll(u, -1)) / 2)
-    direction = np.cumsum(turning) - turning[0]
-    T = np.stack([np.cos(direction), np.sin(direction)])
-    # Weighted least squares: a long edge takes its share of the closing error.
-    weighted = T * length
-    closed = length - length * (T.T @ np.linalg.solve(weighted @ T.T, T @ length))
-    steps = closed * T
-    return np.concatenate([np.zeros((1, 2)), np.cumsum(steps, axis=1).T[:-1]])

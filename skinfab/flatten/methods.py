@@ -17,7 +17,7 @@ from skinfab.errors import InputError
 Flatten = Callable[[NDArray[np.float64], NDArray[np.int64]], NDArray[np.float64]]
 
 METHODS = {
-    "bff": "skinfab.flatten.bff:flatten_scaled",
+    "bff": "skinfab.flatten.holes:flatten_filled",
     "isometric": "skinfab.flatten.disk:flatten_isometric",
     "lscm": "skinfab.flatten.classic:lscm",
     "harmonic": "skinfab.flatten.classic:harmonic",

@@ -11,12 +11,12 @@ from typing import Protocol
 import numpy as np
 
 from skinfab.errors import RefusedError
+from skinfab.flatten.locate import Locator
 from skinfab.material import Material
 from skinfab.paths import Path
 from skinfab.patterns.base import Pattern
 from skinfab.pieces import Piece
 from skinfab.placement.distance import Curves, distance, self_distance
-from skinfab.placement.locate import Locator
 from skinfab.placement.sensor import Sensor
 from skinfab.tolerances import CLEARANCE_MM, PREVIEW_CHORD_MM
 

@@ -8,13 +8,13 @@ from functools import cached_property, lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from skinfab.flatten.locate import Locator
 from skinfab.material import Material
 from skinfab.mesh.model import Mesh
 from skinfab.patterns.base import Pattern
 from skinfab.pieces import Piece
 from skinfab.placement.check import edge_curves
 from skinfab.placement.distance import Curves, distance
-from skinfab.placement.locate import Locator
 from skinfab.placement.raster import Raster
 from skinfab.placement.sensor import Sensor
 from skinfab.tolerances import CREASE_LENGTH_MM, CREASE_RAD, PREVIEW_CHORD_MM

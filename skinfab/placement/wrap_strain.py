@@ -12,10 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skinfab.errors import InputError
+from skinfab.flatten.locate import Locator
 from skinfab.mesh.model import Mesh
 from skinfab.paths import Line, Path
 from skinfab.pieces import Piece
-from skinfab.placement.locate import Locator
 
 Array = NDArray[np.float64]
 

@@ -15,10 +15,10 @@ from skinfab.electrical import ink_volume, resistance
 from skinfab.errors import RefusedError
 from skinfab.files import atomic_write
 from skinfab.flatten.distortion import Distortion
+from skinfab.flatten.locate import Locator
 from skinfab.material import Material
 from skinfab.patterns.registry import parameters
 from skinfab.pieces import Piece
-from skinfab.placement.locate import Locator
 from skinfab.placement.sensor import Sensor
 from skinfab.placement.wrap_strain import wrap_strain
 from skinfab.report.cautions import cautions

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from skinfab.flatten.locate import Locator
 from skinfab.pieces import Piece
-from skinfab.placement.locate import Locator
 from skinfab.report.raster import is_visible, rasterise
 from skinfab.skin import Skin
 

@@ -46,6 +46,18 @@ def test_cones(cones: str, mean: float, tmp_path: Path) -> None:
     assert results.distortion(*results.read_flat_obj(tmp_path / "o.obj"))[0] == pytest.approx(mean, abs=1e-6)
 
 
+def test_bff_fills_holes_and_takes_components_one_by_one(tmp_path: Path) -> None:
+    """Two flat plates, one with two holes: both stay as they are."""
+    V, F = shapes.holed()
+    W, G = shapes.grid(4, 4)
+    mesh = written(tmp_path, np.vstack([5 * V, 20 * W + [0, 0, 30]]), np.vstack([F, G + len(V)]))
+    assert main(["flatten", mesh, "-o", str(tmp_path / "o.obj"), "--method", "bff", "--json", str(tmp_path / "f.json")]) == 0
+    figures = json.loads((tmp_path / "f.json").read_text())
+    assert [p["n_faces"] for p in figures["pieces"]] == [len(F), len(G)]
+    assert figures["distortion"]["mean"] == pytest.approx(4, abs=1e-9)
+    assert figures["distortion"]["mean_at_kept_area"] == pytest.approx(4, abs=1e-9)
+
+
 def test_auto_cuts_what_is_closed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["flatten", CUBE, "-o", str(tmp_path / "o.obj")]) == 0
     assert "cut automatically" in capsys.readouterr().err

@@ -6,7 +6,8 @@ import shapes
 
 from skinfab.errors import InputError
 from skinfab.flatten import bff
-from skinfab.flatten.bff import flatten_disk
+from skinfab.flatten.bff import BffSolver, flatten_disk
+from skinfab.flatten.bff_curve import turning_of
 from skinfab.flatten.distortion import measure, singular_values
 from skinfab.linalg import Cholesky
 
@@ -86,6 +87,205 @@ def test_one_factorisation_two_solves(monkeypatch: pytest.MonkeyPatch) -> None:
     assert [(c.factorisations, c.solves) for c in made] == [(1, 2)]
     flatten_disk(*shapes.grid(5, 1))  # no inner vertex: nothing to solve
     assert len(made) == 1
+
+
+def corners_turn(solver: BffSolver, *corners: int) -> np.ndarray:
+    """A rectangle's turning angles: a right angle at each of the four vertices, straight on elsewhere."""
+    return np.where(np.isin(solver.boundary, corners), np.pi / 2, 0.0)
+
+
+def shape_of(uv: np.ndarray) -> np.ndarray:
+    """What no rotation, shift or size changes."""
+    z = uv @ [1, 1j]
+    z = z - z.mean()
+    return z / np.linalg.norm(z)
+
+
+def distance(uv: np.ndarray, other: np.ndarray) -> float:
+    a, b = shape_of(uv), shape_of(other)
+    return float(np.abs(a * np.exp(-1j * np.angle(np.vdot(b, a))) - b).max())
+
+
+def test_the_objects_own_lengths_open_a_cylinder_into_its_rectangle() -> None:
+    V, F = shapes.cylinder_sheet(48, 10, radius=2.0, height=3.0)
+    solver = BffSolver(V, F)
+    uv = solver.lengths(solver.lengths_mm)
+    assert measure(V, F, uv).mean == pytest.approx(4, abs=1e-9)
+    sides = np.sort(np.linalg.norm(uv[[48, 490]] - uv[0], axis=1))
+    np.testing.assert_allclose(sides, [3, 48 * 4 * np.sin(np.pi / 48)], atol=1e-9)
+
+
+def test_prescribed_lengths_are_met_and_are_the_scale_they_imply() -> None:
+    """Edges of exp's boundary on the unit square: the lengths give the map back, as its scale does."""
+    error = []
+    for n in (8, 16, 32):
+        V, F = shapes.grid(n, n)
+        image = np.exp(V[:, 0] + 1j * V[:, 1])
+        solver = BffSolver(V, F)
+        target = np.abs(np.roll(image[solver.boundary], -1) - image[solver.boundary])
+        uv = solver.lengths(target)
+        got = np.linalg.norm(np.roll(uv[solver.boundary], -1, axis=0) - uv[solver.boundary], axis=1)
+        error.append((np.abs(got / target - 1).max(), distance(uv, np.column_stack([image.real, image.imag]))))
+    close, shape = np.array(error).T
+    assert close[-1] < 2e-3 and shape[-1] < 2e-3
+    assert (close[:-1] / close[1:] > 1.8).all() and (shape[:-1] / shape[1:] > 1.8).all()
+
+
+def test_four_right_angles_lay_a_bent_sheet_out_to_its_rectangle() -> None:
+    V, F = shapes.cylinder_sheet(24, 10)
+    solver = BffSolver(V, F)
+    assert measure(V, F, solver.angles(corners_turn(solver, 0, 24, 250, 274))).mean == pytest.approx(4, abs=1e-9)
+
+
+def test_four_right_angles_make_a_rectangle_of_what_is_not_developable() -> None:
+    """A quarter of an annulus between radii 1 and e is conformal to a rectangle of sides 1 and pi / 2 (the logarithm)."""
+    error = []
+    for n in (8, 16, 32):
+
+        def sector(s, t):
+            r, a = np.exp(s), np.pi / 2 * t
+            return np.stack([r * np.cos(a), r * np.sin(a), 0 * s], axis=1)
+
+        V, F = shapes.grid(n, n, sector)
+        solver = BffSolver(V, F)
+        uv = solver.angles(corners_turn(solver, 0, n, n * (n + 1), (n + 1) ** 2 - 1))
+        turned = turning_of(uv[solver.boundary])
+        np.testing.assert_allclose(turned, corners_turn(solver, 0, n, n * (n + 1), (n + 1) ** 2 - 1), atol=1e-9)
+        z = np.log(V[:, 0] + 1j * V[:, 1])
+        error.append(distance(uv, np.column_stack([z.real, z.imag])))
+    assert error[-1] < 1e-3 and error[0] / error[1] > 3 and error[1] / error[2] > 3
+
+
+def test_angles_undo_scale() -> None:
+    """Neumann to Dirichlet is the inverse of Dirichlet to Neumann, up to the constant: to rounding."""
+    V, F = shapes.wavy(20)
+    solver = BffSolver(V, F)
+    u = 0.3 * np.sin(np.arange(len(solver.boundary)))
+    np.testing.assert_allclose(solver.scale_of(solver._turning(u)), u - u.mean(), atol=1e-12)
+    assert distance(solver.angles(solver._turning(u)), solver.scale(u)) < 1e-12
+
+
+def test_hemisphere_becomes_the_disk_of_stereographic_projection() -> None:
+    error = []
+    for rings in (6, 12, 24, 48):
+        V, F = shapes.cap(rings)
+        solver = BffSolver(V, F)
+        uv = solver.disk()
+        np.testing.assert_allclose(np.linalg.norm(uv[solver.boundary], axis=1), 1, atol=1e-12)
+        error.append(np.abs(np.linalg.norm(uv, axis=1) - np.tan(np.arccos(V[:, 2]) / 2)).max())
+    assert error[-1] < 5e-5 and (np.array(error[:-1]) / error[1:] > 3).all()  # second order
+
+
+def egg(rings: int):
+    """Half an egg with a dent: smooth round its border, without any symmetry of the circle."""
+    V, F = shapes.cap(rings)
+    x, y, z = V.T
+    return np.column_stack([1.4 * x + 0.2 * x * y, y, z + 0.15 * np.sin(3 * x + y)]), F
+
+
+def test_disk_is_conformal_in_the_limit_whatever_vertex_comes_first() -> None:
+    error = []
+    for rings in (6, 12, 24, 48):
+        V, F = egg(rings)
+        uv = BffSolver(V, F).disk()
+        s = singular_values(V, F, uv)
+        assert s.min() > 0
+        error.append((s[:, 0] / s[:, 1] - 1).mean())
+        W, G, place = shapes.relabelled(V, F, 3)
+        assert distance(BffSolver(W, G).disk()[place], uv) < 1e-8
+    assert (np.log2(np.array(error[:-1]) / error[1:]) > 0.8).all() and error[-1] < 0.03
+
+
+def test_the_curve_of_the_free_boundary_gives_its_map_back() -> None:
+    error = []
+    for n in (12, 24, 48):
+        V, F = shapes.wavy(n)
+        solver = BffSolver(V, F)
+        free = solver.free()
+        error.append(np.abs(solver.curve(free[solver.boundary]) - free).max())
+    assert max(error) < 1e-6
+    for V, F in (shapes.cap(12), shapes.cylinder_sheet()):
+        solver = BffSolver(V, F)
+        free = solver.free()
+        np.testing.assert_allclose(solver.curve(free[solver.boundary]), free, atol=1e-9)
+
+
+def test_a_curve_is_met_and_the_map_to_it_conformal_in_the_limit() -> None:
+    """A hemisphere laid in an ellipse of 3 : 2."""
+    a = 2 * np.pi * np.arange(720) / 720
+    ellipse = np.column_stack([30 * np.cos(a), 20 * np.sin(a)])
+    error = []
+    for rings in (6, 12, 24, 48):
+        V, F = shapes.cap(rings)
+        solver = BffSolver(V, F)
+        uv = solver.curve(ellipse)
+        np.testing.assert_allclose(np.hypot(*(uv[solver.boundary] / [30, 20]).T), 1, atol=2e-5)
+        s = singular_values(V, F, uv)
+        assert s.min() > 0
+        error.append((s[:, 0] / s[:, 1] - 1).mean())
+    rate = np.log2(np.array(error[:-1]) / error[1:])
+    assert (rate > 0.8).all() and error[-1] < 0.03
+
+
+METHODS = {
+    "free": (lambda s, unit: s.free(), 1),
+    "scale": (lambda s, unit: s.scale(0.2 * np.cos(np.arange(len(s.boundary)))), 1),
+    "lengths": (lambda s, unit: s.lengths(s.lengths_mm * (1.2 + 0.2 * np.cos(np.arange(len(s.boundary))))), 1),
+    "angles": (lambda s, unit: s.angles(np.full(len(s.boundary), 2 * np.pi / len(s.boundary))), 1),
+    "curve": (lambda s, unit: s.curve(unit * np.array([[0.0, 0], [2, 0], [2, 1], [0, 1]])), 1),
+    "disk": (lambda s, unit: s.disk(), 0),
+}
+
+
+@pytest.mark.parametrize("unit", [1e-6, 1e-3, 1e3, 1e6])
+@pytest.mark.parametrize("method", METHODS)
+def test_unit_changes_nothing(method: str, unit: float) -> None:
+    V, F = shapes.wavy()
+    call, power = METHODS[method]
+    there, here = call(BffSolver(unit * V, F), unit), call(BffSolver(V, F), 1.0)
+    np.testing.assert_allclose(there / unit**power, here, atol=1e-9 * np.abs(here).max())
+
+
+def test_counters() -> None:
+    """One factorisation for all; two solves a map, the boundary's inverse in blocks of 64, and none for the rounds of a target shape."""
+    V, F = shapes.wavy(20)
+    solver = BffSolver(V, F)
+    b = len(solver.boundary)
+    assert (b, solver.factorisations, solver.solves) == (80, 1, 0)
+    solver.free()
+    solver.scale(np.ones(b))
+    solver.lengths(solver.lengths_mm)
+    assert (solver.factorisations, solver.solves) == (1, 6)
+    solver.disk()  # the free turning angles, two blocks, the extension
+    assert (solver.factorisations, solver.solves) == (1, 10)
+    solver.disk()
+    solver.angles(np.full(b, 2 * np.pi / b))
+    solver.curve(np.array([[0.0, 0], [2, 0], [2, 1], [0, 1]]))
+    assert (solver.factorisations, solver.solves) == (1, 13)
+
+
+@pytest.mark.parametrize("mesh", [shapes.grid(5, 1), shapes.grid(1, 1)], ids=["strip", "two triangles"])
+def test_without_inner_vertices_nothing_is_solved(mesh) -> None:
+    solver = BffSolver(*mesh)
+    maps = [solver.free(), solver.disk(), solver.angles(np.full(len(solver.boundary), 2 * np.pi / len(solver.boundary)))]
+    assert np.isfinite(maps).all() and (solver.factorisations, solver.solves) == (0, 0)
+
+
+@pytest.mark.parametrize(
+    ("call", "says"),
+    [
+        (lambda s: s.scale(np.zeros(7)), r"scale factors are 48 finite numbers, .* shape \(7,\)"),
+        (lambda s: s.scale(np.full(48, np.nan)), "scale factors are 48 finite numbers"),
+        (lambda s: s.lengths(np.r_[np.ones(47), 0]), "boundary edge 47 has length 0 mm in the target lengths"),
+        (lambda s: s.angles(np.zeros(48)), "sum to 0 rad; a closed curve turns by 2 pi"),
+        (lambda s: s.curve(np.zeros((2, 2))), r"three or more finite points .* \(2, 2\)"),
+        (lambda s: s.curve(np.array([[0.0, 0], [0, 1], [1, 1]])), "counter-clockwise"),
+    ],
+    ids=["count", "not a number", "no length", "angles", "two points", "clockwise"],
+)
+def test_a_boundary_that_cannot_be_is_named(call, says: str) -> None:
+    with pytest.raises(InputError, match=says):
+        call(BffSolver(*shapes.wavy()))
 
 
 def pair(V, F):

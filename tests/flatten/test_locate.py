@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from skinfab.placement.locate import Locator
+from skinfab.flatten.locate import Locator
 
 
 def grid(n: int) -> tuple[np.ndarray, np.ndarray]:

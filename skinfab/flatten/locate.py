@@ -42,7 +42,8 @@ class Locator:
         import shapely
 
         xy = np.asarray(points, dtype=float).reshape(-1, 2)
-        which, tri = self._tree.query(shapely.points(xy), predicate="intersects")
+        # No predicate: the envelope of a box is the box, and a point has nothing but its envelope.
+        which, tri = self._tree.query(shapely.points(xy))
         a, b, c = np.moveaxis(self._corners[tri], 1, 0)
         p = xy[which]
         double = _cross(b - a, c - a)
