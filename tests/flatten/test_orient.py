@@ -27,3 +27,14 @@ def test_rigid_in_the_corner_and_long_along_x(seed: int, count: int) -> None:
 
 def test_points_on_a_line_are_only_shifted() -> None:
     np.testing.assert_array_equal(orient(np.array([[1.0, 2], [3, 4], [2, 3]])), [[0, 0], [2, 2], [1, 1]])
+
+
+@settings(max_examples=30, deadline=None)
+@given(st.integers(0, 10_000))
+def test_points_inside_make_no_difference(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    border = rng.standard_normal((40, 2)) @ rng.standard_normal((2, 2)) * 10.0 ** rng.integers(-6, 7) + rng.standard_normal(2)
+    weight = rng.dirichlet(np.ones(40), size=3000)
+    laid = orient(np.vstack([border, weight @ border]))
+    np.testing.assert_allclose(laid[:40], orient(border), rtol=0, atol=1e-12 * np.abs(border).max())
+    assert (laid[40:] > -1e-12 * np.abs(border).max()).all()
