@@ -27,7 +27,7 @@ FLOORS = (
     ("seams", "placement"),
     ("skin",),
     ("document", "mould", "mould_plan", "wire_exits", "recipe", "work_order", "drawings", "report"),
-    ("cli", "__main__"),
+    ("cli", "bench", "__main__"),
 )
 FLOOR_OF = {room: k for k, rooms in enumerate(FLOORS) for room in rooms}
 

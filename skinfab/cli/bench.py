@@ -1,0 +1,77 @@
+"""`skinfab bench [NAME ...] -o DIR`: measure the project beside its peers."""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import json
+from pathlib import Path
+
+from skinfab.cli import steps
+
+#: What can be measured; `skinfab/bench/NAME.py` holds its `run`.
+NAMES = {"flatten": "time against distortion of the ways to flatten a disk"}
+
+
+def name(text: str) -> str:
+    """One of `NAMES`, for argparse."""
+    if text not in NAMES:
+        raise argparse.ArgumentTypeError(f"{text!r} is not measured; there are {', '.join(NAMES)}")
+    return text
+
+
+def sizes(text: str) -> list[int]:
+    """Numbers of triangles such as 5000,20000, for argparse."""
+    words = text.split(",")
+    if not all(word.isascii() and word.isdecimal() and int(word) > 0 for word in words):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a list of numbers of triangles such as 5000,20000")
+    return sorted({int(word) for word in words})
+
+
+def repeats(text: str) -> int:
+    """A whole number from 1 up, for argparse."""
+    if not (text.isascii() and text.isdecimal() and int(text) > 0):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number from 1 up")
+    return int(text)
+
+
+def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add the command and its options."""
+    p = subparsers.add_parser(
+        "bench",
+        help="measure the project beside its peers",
+        description="Measure the project beside its peers, all in one run, in turns and on one processor; the least time of the repeats "
+        "counts, without imports, reading and writing. Writes a table, a chart and a sentence. There are: "
+        + "; ".join(f"{key} ({what})" for key, what in NAMES.items())
+        + ".",
+    )
+    p.add_argument("names", metavar="NAME", nargs="*", type=name, help="what to measure (default: everything)")
+    p.add_argument("-o", "--output", metavar="DIR", type=Path, required=True, help="the folder to write into")
+    p.add_argument("--sizes", metavar="N,N,...", type=sizes, help="triangles of the disks (default: 5000,20000,80000)")
+    p.add_argument("--repeats", metavar="K", type=repeats, default=3, help="the least time of K counts (default: 3)")
+    p.add_argument("--json", action="store_true", help="print one JSON object and nothing else")
+    p.set_defaults(run=run, wrong_usage=p.error)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Measure, write, and say what came out."""
+    from skinfab.progress import part_of, terminal_progress
+    from skinfab.staging import staged_folder
+
+    wanted = list(dict.fromkeys(args.names or NAMES))
+    options = {"repeats": args.repeats, **({"sizes": args.sizes} if args.sizes else {})}
+    found = {}
+    with staged_folder(args.output) as folder:
+        with terminal_progress(quiet=args.json) as progress:
+            for k, key in enumerate(wanted):
+                part = part_of(progress, k / len(wanted), (k + 1) / len(wanted))
+                found[key] = importlib.import_module(f"skinfab.bench.{key}").run(folder, progress=part, **options)
+        written = [str(args.output / file.name) for file in sorted(folder.iterdir())]
+    if args.json:
+        print(json.dumps({"files": written, **found}, allow_nan=False))
+        return 0
+    for result in found.values():
+        print(result["sentence"])
+        steps.say(result["notes"])
+    print("wrote " + ", ".join(written))
+    return 0
