@@ -54,8 +54,8 @@ def local_triangles(V: FloatArray, F: NDArray[np.int64]) -> FloatArray:
     """Each triangle laid in its own plane, corner 0 at the origin, edge 0-1 along x: (m, 2, 2), rows e1, e2 in mm."""
     p = V[F]
     e1, e2 = p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]
-    length = np.linalg.norm(e1, axis=1)
-    twice_area = np.linalg.norm(np.cross(e1, e2), axis=1)
+    length = _length(e1)
+    twice_area = _length(np.cross(e1, e2))
     with np.errstate(divide="ignore", invalid="ignore"):
         along, up = np.einsum("ij,ij->i", e1, e2) / length, twice_area / length
     return np.stack([np.stack([length, np.zeros_like(length)], axis=1), np.stack([along, up], axis=1)], axis=1)
@@ -145,7 +145,14 @@ def best_scale(V: FloatArray, F: NDArray[np.int64], UV: FloatArray) -> float:
 
 def shaped_areas(V: FloatArray, F: NDArray[np.int64]) -> tuple[FloatArray, NDArray[np.bool_]]:
     """Area of each triangle, mm^2, and whether it is wide enough to have a shape."""
-    p = V[F]
-    twice = np.linalg.norm(np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]), axis=1)
-    longest = np.linalg.norm(p - np.roll(p, 1, axis=1), axis=2).max(axis=1)
+    a, b, c = (V[corner] for corner in F.T)
+    side = b - a, c - b, a - c
+    twice = _length(np.cross(side[0], c - a))
+    longest = np.maximum(np.maximum(_length(side[0]), _length(side[1])), _length(side[2]))
     return twice / 2, twice > DEGENERATE_HEIGHT * longest**2
+
+
+def _length(rows: FloatArray) -> FloatArray:
+    """Of each row of three, (m,): column by column, which is several times faster than a norm along short rows."""
+    x, y, z = rows.T
+    return np.sqrt(x * x + y * y + z * z)

@@ -206,12 +206,11 @@ def _hushed() -> Iterator[None]:
 def _check(V: NDArray[np.float64], F: NDArray[np.int64], name: str) -> None:
     if not len(V) or not len(F):
         raise InputError(f"{name} has no faces; export the mesh again")
-    bad = ~np.isfinite(V).all(axis=1)
-    if bad.any():
+    if not np.isfinite(V).all():
+        bad = ~np.isfinite(V).all(axis=1)
         raise InputError(f"{name}: vertex {int(np.argmax(bad))} (counted from 0) is not finite (NaN or infinity); export the mesh again")
-    bad = ((F < 0) | (F >= len(V))).any(axis=1)
-    if bad.any():
-        k = int(np.argmax(bad))
+    if F.min() < 0 or F.max() >= len(V):
+        k = int(np.argmax(((F < 0) | (F >= len(V))).any(axis=1)))
         raise InputError(f"{name}: face {k} (counted from 0) uses vertex {F[k].max()}, but there are {len(V)}; export the mesh again")
     # Squares and products of coordinates must stay finite too.
     if np.abs(V).max() > 1e100:

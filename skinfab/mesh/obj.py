@@ -76,8 +76,8 @@ def _check(found: _Polygons, name: str) -> tuple[NDArray[np.float64], IntArray]:
         raise InputError(f"{name} has no vertices (no line 'v x y z'); check that it is an OBJ file")
     if not len(found.sizes):
         raise InputError(f"{name} has {len(found.V)} vertices but no faces; export it as a surface mesh, not as points")
-    bad = ~np.isfinite(found.V).all(axis=1)
-    if bad.any():
+    if not np.isfinite(found.V).all():
+        bad = ~np.isfinite(found.V).all(axis=1)
         line = found.vertex_line[np.argmax(bad)]
         raise InputError(f"{name} line {line}: vertex {int(np.argmax(bad)) + 1} is not finite (NaN or infinity); export the mesh again")
     bad = found.sizes > max(len(found.V), 3)
