@@ -58,7 +58,8 @@ def flatten_isometric(
         # A nearly collapsed triangle stalls the line search as surely as a flipped one.
         uv = tutte_embedding(V, F, topology=topology)
         uv = uv * best_scale(V, F, uv)
-    if len(F) >= _RIGID_FROM:
+    # Where a rough answer will do, Newton's first steps give it by themselves.
+    if len(F) >= _RIGID_FROM and tolerance <= NEWTON_DECREASE:
         near = rigid_steps(V, F, uv, steps=_RIGID_STEPS)
         uv = near if _open(V, F, near) else uv
     return IsometricSolver(V, F).refine(uv, tolerance=tolerance, hopeless_above=hopeless_above).UV
