@@ -75,6 +75,7 @@ def draw_refinement(refinement: Table, path: Path) -> None:
 def _panels(count: int, title: str) -> tuple[Figure, list[Axes]]:
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
+    from matplotlib.ticker import LogLocator, NullFormatter
 
     figure = Figure(figsize=(_WIDTH * count, _HEIGHT), dpi=_DPI)
     FigureCanvasAgg(figure)  # names are placed by their extent, which only a canvas that draws knows
@@ -83,6 +84,9 @@ def _panels(count: int, title: str) -> tuple[Figure, list[Axes]]:
     panels = list(figure.subplots(1, count, squeeze=False, sharey=True)[0])
     for axes in panels:
         axes.set(xscale="log", yscale="log", xlabel="time, s")
+        axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+        axes.xaxis.set_major_formatter("{x:g}")
+        axes.xaxis.set_minor_formatter(NullFormatter())
         axes.grid(True, which="both", lw=0.3, alpha=0.6)
     panels[0].set_ylabel("mean d - 4 (0 is perfect)")
     return figure, panels
