@@ -60,8 +60,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     # Two threads make the sparse factorisations slower; the libraries read this once, when numpy is first imported.
     for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
         os.environ.setdefault(variable, "1")
-    with _quiet_warnings(), _termination_as_interrupt():
-        return _guarded(lambda: _dispatch(arguments))
+    with _quiet_warnings(), _termination_as_interrupt() as interrupts:
+        return _guarded(lambda: _dispatch(arguments), interrupts)
 
 
 def build_parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
@@ -106,7 +106,7 @@ def _suggest(word: str, known: Iterable[str]) -> str:
     return f" (did you mean {near[0]}?)" if near else ""
 
 
-def _guarded(work: Callable[[], int]) -> int:
+def _guarded(work: Callable[[], int], interrupts: Sequence[int]) -> int:
     try:
         status = work()
         sys.stdout.flush()  # a full disk or a closed pipe must show here, not while Python shuts down
@@ -128,6 +128,8 @@ def _guarded(work: Callable[[], int]) -> int:
             _drop_output()  # most likely standard output itself
         return _complain(f"{where}{fault.strerror or fault}", 1)
     except Exception as fault:
+        if interrupts:  # a library turned the interrupt into an error of its own
+            return _complain("interrupted; nothing half-written was left", INTERRUPTED)
         return _complain(
             f"unexpected {type(fault).__name__}: {fault}; SKINFAB_TRACEBACK=1 shows where (a fault of skinfab: please report it)", 1
         )
@@ -161,11 +163,14 @@ def _quiet_warnings() -> Iterator[None]:
 
 
 @contextmanager
-def _termination_as_interrupt() -> Iterator[None]:
+def _termination_as_interrupt() -> Iterator[list[int]]:
     """Let SIGTERM and SIGHUP unwind like Ctrl-C, so that temporary files go, and see that each gets through."""
+
+    seen: list[int] = []
 
     def interrupt(signum: int, frame: FrameType | None) -> None:
         # An interrupt inside a library's callback can be swallowed there: it comes again until it gets through.
+        seen.append(signum)
         signal.setitimer(signal.ITIMER_REAL, AGAIN_S)
         raise KeyboardInterrupt
 
@@ -177,7 +182,7 @@ def _termination_as_interrupt() -> Iterator[None]:
     try:
         for s in caught:
             signal.signal(s, interrupt)
-        yield
+        yield seen
     finally:
         if caught:
             signal.setitimer(signal.ITIMER_REAL, 0)
