@@ -81,6 +81,32 @@ def barrier_assemble(
 
 
 @numba.njit(cache=True)
+def barrier_gradient(u: FloatArray, loop: IntArray, reach: float, weight: float, gradient: FloatArray) -> None:
+    """Add the barrier's gradient."""
+    n = loop.shape[0]
+    for j in range(n):
+        a, b = loop[j], loop[(j + 1) % n]
+        low_x, high_x = min(u[a, 0], u[b, 0]) - reach, max(u[a, 0], u[b, 0]) + reach
+        low_y, high_y = min(u[a, 1], u[b, 1]) - reach, max(u[a, 1], u[b, 1]) + reach
+        for i in range(n):
+            p = loop[i]
+            x, y = u[p, 0], u[p, 1]
+            if x < low_x or x > high_x or y < low_y or y > high_y or p in (a, b):
+                continue
+            distance, nx, ny, t = _nearest(x, y, u[a, 0], u[a, 1], u[b, 0], u[b, 1])
+            if not 0.0 < distance < reach:
+                continue
+            near = reach / distance
+            first = -2.0 * (near - 1.0) * near / distance * weight
+            gradient[2 * p] += first * nx
+            gradient[2 * p + 1] += first * ny
+            gradient[2 * a] -= first * (1.0 - t) * nx
+            gradient[2 * a + 1] -= first * (1.0 - t) * ny
+            gradient[2 * b] -= first * t * nx
+            gradient[2 * b + 1] -= first * t * ny
+
+
+@numba.njit(cache=True)
 def first_crossing(u: FloatArray, step: FloatArray, loop: IntArray, most: float) -> float:
     """The smallest t in (0, most] at which a vertex of the loop meets an edge that it does not bound; infinite if none."""
     n = loop.shape[0]

@@ -6,8 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skinfab.flatten.bff import flatten_disk
-from skinfab.flatten.distortion import best_scale, singular_values
-from skinfab.flatten.isometric import IsometricSolver
+from skinfab.flatten.isometric import MOST_STEPS, IsometricSolver, Refinement
 from skinfab.flatten.rigid_start import rigid_steps
 from skinfab.flatten.tutte import tutte_embedding
 from skinfab.mesh.topology import Topology
@@ -53,19 +52,36 @@ def flatten_isometric(
     """
     topology = topology or Topology(F)
     uv = flatten_disk(V, F, topology=topology)
-    uv = uv * best_scale(V, F, uv)
-    if not _open(V, F, uv):
+    return lower(V, F, uv, topology=topology, tolerance=tolerance, hopeless_above=hopeless_above).UV
+
+
+def lower(
+    V: FloatArray,
+    F: NDArray[np.int64],
+    UV: FloatArray,
+    *,
+    topology: Topology | None = None,
+    max_steps: int = MOST_STEPS,
+    tolerance: float = NEWTON_DECREASE,
+    hopeless_above: float = np.inf,
+) -> Refinement:
+    """What `flatten_isometric` makes of BFF's layout `UV`, (n, 2) at any scale.
+
+    Parameters are those of `flatten_isometric` and of `IsometricSolver.refine`.
+    """
+    solver = IsometricSolver(V, F)
+    uv, is_open = _scaled(solver, UV)
+    if not is_open:
         # A nearly collapsed triangle stalls the line search as surely as a flipped one.
-        uv = tutte_embedding(V, F, topology=topology)
-        uv = uv * best_scale(V, F, uv)
+        uv, _ = _scaled(solver, tutte_embedding(V, F, topology=topology))
     # Where a rough answer will do, Newton's first steps give it by themselves.
     if len(F) >= _RIGID_FROM and tolerance <= NEWTON_DECREASE:
-        near = rigid_steps(V, F, uv, steps=_RIGID_STEPS)
-        uv = near if _open(V, F, near) else uv
-    return IsometricSolver(V, F).refine(uv, tolerance=tolerance, hopeless_above=hopeless_above).UV
+        near, is_open = _scaled(solver, rigid_steps(V, F, uv, steps=_RIGID_STEPS, rest=solver.rest))
+        uv = near if is_open else uv
+    return solver.refine(uv, max_steps=max_steps, tolerance=tolerance, hopeless_above=hopeless_above)
 
 
-def _open(V: FloatArray, F: NDArray[np.int64], uv: FloatArray) -> bool:
-    """No triangle is flipped or nearly collapsed."""
-    s = singular_values(V, F, uv)
-    return bool(np.isfinite(s).all() and s[:, 1].min() >= FLAT_START * s[:, 0].max())
+def _scaled(solver: IsometricSolver, uv: FloatArray) -> tuple[FloatArray, bool]:
+    """At the scale of the least d, and whether no triangle is flipped or nearly collapsed."""
+    scale, thinnest = solver.best_scale(uv)
+    return uv * scale, thinnest >= FLAT_START

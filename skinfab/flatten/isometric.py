@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from scipy.sparse import csc_array
 
 from skinfab.errors import InputError
-from skinfab.flatten._barrier import barrier_assemble, barrier_energy, first_crossing
-from skinfab.flatten._dirichlet import assemble, energies, first_collapse
+from skinfab.flatten._barrier import barrier_assemble, barrier_energy, barrier_gradient, first_crossing
+from skinfab.flatten._dirichlet import assemble, energies, extremes, first_collapse, gradient_of, vertex_pattern
 from skinfab.flatten.distortion import local_triangles, shaped_areas
 from skinfab.flatten.laplacian import mollified_lengths
 from skinfab.linalg import Cholesky
@@ -27,6 +27,12 @@ FloatArray = NDArray[np.float64]
 #: Far from the optimum many steps follow that each promise little: from Tutte's start on a ramp of two turns and more,
 #: twice the promise gave up 10 bounds of 25 that were reached in the end, 16 times gave up none and cost no time.
 _HOPE = 16
+
+#: Ten times what real pieces need.
+MOST_STEPS = 60
+
+#: A step by an earlier Hessian is taken when it promises less than this fraction of what the step before it did.
+_CONTRACTION = 0.25
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,13 +91,12 @@ class IsometricSolver:
     """
 
     def __init__(self, V: FloatArray, F: NDArray[np.int64]) -> None:
-        self.F, self.n = F, len(V)
-        rest = rest_triangles(V, F)
-        twice_area = rest[:, 0, 0] * rest[:, 1, 1]
+        self.F, self.n = np.ascontiguousarray(F), len(V)
+        self.rest = rest_triangles(V, F)
+        twice_area = self.rest[:, 0, 0] * self.rest[:, 1, 1]
         self.weight = twice_area / twice_area.sum()
-        self.gradients = _basis_gradients(rest, twice_area)
-        self._slots, self._pattern = _sparsity(F, self.n)
-        self._indptr = self._pattern.indptr.astype(np.int64)
+        self.gradients = _basis_gradients(self.rest, twice_area)
+        self._indptr, self._indices, self._place = vertex_pattern(self.F, self.n)
         self._cholesky: Cholesky | None = None
 
     @property
@@ -103,7 +108,7 @@ class IsometricSolver:
         self,
         UV: FloatArray,
         *,
-        max_steps: int = 60,
+        max_steps: int = MOST_STEPS,
         tolerance: float = NEWTON_DECREASE,
         hopeless_above: float = np.inf,
         apart: Apart | None = None,
@@ -130,43 +135,67 @@ class IsometricSolver:
         energy = [self._energy(u, apart)]
         if not np.isfinite(energy[0]):
             raise InputError("the start of the refinement has flipped triangles; untangle it first")
-        converged = False
+        converged, before = False, 0.0
         while len(energy) <= max_steps:
-            step, slope = self._newton_step(u, apart)
+            # The last factor's step is good while each promises far less than the one before, as it does near the end.
+            step, slope = self._step(u, apart, renew=False) if before else (u, -np.inf)
             # The quadratic model promises -slope / 2.
-            if energy[-1] + _HOPE * slope / 2 > hopeless_above:
-                break
+            if not -slope <= _CONTRACTION * before or energy[-1] + _HOPE * slope / 2 > hopeless_above:
+                before = 0.0
+                step, slope = self._step(u, apart, renew=True)
+                if energy[-1] + _HOPE * slope / 2 > hopeless_above:
+                    break
             if -slope <= tolerance * max(energy[-1] - 4, tolerance):
                 converged = True
                 break
-            u_next, e_next = self._line_search(u, step, slope, energy[-1], apart)
+            t, u_next, e_next = self._line_search(u, step, slope, energy[-1], apart)
             if e_next >= energy[-1]:
+                if before:
+                    before = 0.0
+                    continue
                 converged = True
                 break
+            before = -slope if t == 1 else 0.0
             u = u_next
             energy.append(e_next)
         return Refinement(u, tuple(energy), converged)
+
+    def best_scale(self, UV: FloatArray) -> tuple[float, float]:
+        """The factor on `UV` of the least mean d, and the least singular value over the largest (not positive: flipped)."""
+        stretch, squash, least, largest = extremes(np.ascontiguousarray(UV), self.F, self.gradients, self.weight)
+        return ((squash / stretch) ** 0.25 if stretch > 0 else 1.0), (least / largest if largest > 0 else -1.0)
 
     def _energy(self, u: FloatArray, apart: Apart | None) -> float:
         d = energies(u, self.F, self.gradients, self.weight)
         return d + apart.weight * barrier_energy(u, apart.loop, apart.reach) if apart and np.isfinite(d) else d
 
-    def _newton_step(self, u: FloatArray, apart: Apart | None) -> tuple[FloatArray, float]:
-        data, gradient = assemble(u, self.F, self.gradients, self.weight, self._slots, self._pattern.nnz)
-        if apart:
-            barrier_assemble(u, apart.loop, apart.reach, apart.weight, self._indptr, data, gradient)
-        # The rigid motions cost nothing: a ridge far below the stiffness fixes them.
-        diagonal = self._pattern.indptr[:-1]
-        data[diagonal] += NEWTON_RIDGE * data[diagonal].mean()
-        if self._cholesky is None:
-            pattern = self._pattern
-            self._cholesky = Cholesky(csc_array((data, pattern.indices, pattern.indptr), shape=pattern.shape))
+    def _step(self, u: FloatArray, apart: Apart | None, *, renew: bool) -> tuple[FloatArray, float]:
+        """Downhill by the Hessian here (`renew`) or by the last that was factored, and the energy's slope along it."""
+        if renew or self._cholesky is None:
+            data, gradient = assemble(u, self.F, self.gradients, self.weight, self._place, self._indptr)
+            if apart:
+                barrier_assemble(u, apart.loop, apart.reach, apart.weight, self._indptr, data, gradient)
+            self._factor(data)
         else:
-            self._cholesky.refactor(data)
+            gradient = gradient_of(u, self.F, self.gradients, self.weight)
+            if apart:
+                barrier_gradient(u, apart.loop, apart.reach, apart.weight, gradient)
+        assert self._cholesky is not None
         step = self._cholesky.solve(-gradient)
         return step.reshape(-1, 2), float(gradient @ step)
 
-    def _line_search(self, u: FloatArray, step: FloatArray, slope: float, start: float, apart: Apart | None) -> tuple[FloatArray, float]:
+    def _factor(self, data: FloatArray) -> None:
+        # The rigid motions cost nothing: a ridge far below the stiffness fixes them.
+        diagonal = self._indptr[:-1]
+        data[diagonal] += NEWTON_RIDGE * data[diagonal].mean()
+        if self._cholesky is None:
+            self._cholesky = Cholesky(csc_array((data, self._indices, self._indptr), shape=(2 * self.n, 2 * self.n)))
+        else:
+            self._cholesky.refactor(data)
+
+    def _line_search(
+        self, u: FloatArray, step: FloatArray, slope: float, start: float, apart: Apart | None
+    ) -> tuple[float, FloatArray, float]:
         t = min(1.0, 0.9 * first_collapse(u, step, self.F))
         if apart:
             t = min(t, 0.9 * first_crossing(u, step, apart.loop, t))
@@ -174,9 +203,9 @@ class IsometricSolver:
             trial = u + t * step
             e = self._energy(trial, apart)
             if e <= start + 1e-4 * t * slope:
-                return trial, e
+                return t, trial, e
             t /= 2
-        return u, start
+        return 0.0, u, start
 
 
 def rest_triangles(V: FloatArray, F: NDArray[np.int64]) -> FloatArray:
@@ -198,14 +227,3 @@ def _basis_gradients(rest: FloatArray, twice_area: FloatArray) -> FloatArray:
     g1 = np.stack([rest[:, 1, 1], -rest[:, 1, 0]], axis=1) / twice_area[:, None]
     g2 = np.stack([-rest[:, 0, 1], rest[:, 0, 0]], axis=1) / twice_area[:, None]
     return np.ascontiguousarray(np.stack([-g1 - g2, g1, g2], axis=1))
-
-
-def _sparsity(F: NDArray[np.int64], n: int) -> tuple[NDArray[np.int64], csc_array]:
-    """Where each of a triangle's 21 lower entries goes in the (2n, 2n) lower CSC matrix: (m, 21) and the pattern."""
-    unknown = np.stack([2 * F, 2 * F + 1], axis=2).reshape(-1, 6)
-    i, j = np.tril_indices(6)
-    low, high = np.minimum(unknown[:, i], unknown[:, j]), np.maximum(unknown[:, i], unknown[:, j])
-    keys, slots = np.unique(low * (2 * n) + high, return_inverse=True)
-    columns, rows = keys // (2 * n), keys % (2 * n)
-    indptr = np.searchsorted(columns, np.arange(2 * n + 1))
-    return slots.reshape(low.shape), csc_array((np.ones(len(keys)), rows, indptr), shape=(2 * n, 2 * n))

@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array, csc_array
 
 from skinfab.flatten.isometric import rest_triangles
-from skinfab.flatten.laplacian import intrinsic
 from skinfab.linalg import Cholesky
 from skinfab.tolerances import NEWTON_RIDGE, RIGID_WEIGHT
 
@@ -22,7 +21,7 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 
-def rigid_steps(V: FloatArray, F: IntArray, UV: FloatArray, *, steps: int) -> FloatArray:
+def rigid_steps(V: FloatArray, F: IntArray, UV: FloatArray, *, steps: int, rest: FloatArray | None = None) -> FloatArray:
     """`UV` after that many local/global steps, (n, 2) mm; triangles may be flipped afterwards.
 
     Parameters
@@ -31,6 +30,8 @@ def rigid_steps(V: FloatArray, F: IntArray, UV: FloatArray, *, steps: int) -> Fl
     F : (m, 3) int64
     UV : (n, 2) float64, mm
     steps : int
+    rest : (m, 2, 2) float64, mm, optional
+        `rest_triangles` of the mesh, where they are at hand.
 
     Examples
     --------
@@ -42,7 +43,8 @@ def rigid_steps(V: FloatArray, F: IntArray, UV: FloatArray, *, steps: int) -> Fl
     """
     n = len(V)
     # Negative weights would push triangles over.
-    weight = np.maximum(intrinsic(V, F).cotangent, RIGID_WEIGHT) / 2
+    rest = rest_triangles(V, F) if rest is None else rest
+    weight = np.maximum(_cotangents(rest), RIGID_WEIGHT) / 2
     i, j, w = F[:, [1, 2, 0]].ravel(), F[:, [2, 0, 1]].ravel(), weight.ravel()
     low, high = np.minimum(i, j), np.maximum(i, j)
     diagonal = np.bincount(i, w, n) + np.bincount(j, w, n)
@@ -52,12 +54,17 @@ def rigid_steps(V: FloatArray, F: IntArray, UV: FloatArray, *, steps: int) -> Fl
         shape=(n, n),
     )
     solver = Cholesky(csc_array(lower))
-    rest = rest_triangles(V, F)
     u = np.ascontiguousarray(UV)
     for _ in range(steps):
         # The ridge pulls towards where the layout is, not towards the origin.
         u = solver.solve(_turned_edges(u, F, rest, weight) + NEWTON_RIDGE * diagonal[:, None] * u)
     return u
+
+
+def _cotangents(rest: FloatArray) -> FloatArray:
+    """At each corner of the triangles (0, 0), (base, 0), (x, y): (m, 3)."""
+    base, x, y = rest[:, 0, 0], rest[:, 1, 0], rest[:, 1, 1]
+    return np.stack([x / y, (base - x) / y, (y * y - x * (base - x)) / (base * y)], axis=1)
 
 
 @numba.njit(cache=True)

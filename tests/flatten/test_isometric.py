@@ -1,5 +1,7 @@
 """The compiled energy against a plain formula and its own differences; Newton steps against libigl's SLIM."""
 
+import itertools
+
 import igl
 import numpy as np
 import pytest
@@ -10,7 +12,7 @@ from hypothesis import strategies as st
 from skinfab import linalg
 from skinfab.errors import InputError
 from skinfab.flatten import isometric
-from skinfab.flatten._dirichlet import assemble, energies, first_collapse
+from skinfab.flatten._dirichlet import assemble, energies, first_collapse, gradient_of, vertex_pattern
 from skinfab.flatten.bff import flatten_disk
 from skinfab.flatten.distortion import best_scale, measure, singular_values
 from skinfab.flatten.isometric import IsometricSolver
@@ -33,11 +35,12 @@ def energy(solver: IsometricSolver, u: np.ndarray) -> float:
 
 
 def derivatives(solver: IsometricSolver, u: np.ndarray):
-    pattern = solver._pattern
-    data, gradient = assemble(np.ascontiguousarray(u.reshape(-1, 2)), solver.F, solver.gradients, solver.weight, solver._slots, pattern.nnz)
-    half = np.zeros(pattern.shape)
-    rows, columns = pattern.indices, np.repeat(np.arange(pattern.shape[1]), np.diff(pattern.indptr))
-    half[rows, columns] = data
+    n = 2 * solver.n
+    data, gradient = assemble(
+        np.ascontiguousarray(u.reshape(-1, 2)), solver.F, solver.gradients, solver.weight, solver._place, solver._indptr
+    )
+    half = np.zeros((n, n))
+    half[solver._indices, np.repeat(np.arange(n), np.diff(solver._indptr))] = data
     return gradient, half + np.tril(half, -1).T
 
 
@@ -179,7 +182,7 @@ def test_unit_changes_nothing(unit: float) -> None:
     np.testing.assert_allclose(there.UV / unit, here.UV, atol=1e-5)
 
 
-def test_analysed_once_factored_every_step(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_analysed_once_and_factored_less_often_than_it_steps(monkeypatch: pytest.MonkeyPatch) -> None:
     class Watched(linalg.Cholesky):
         made = 0
 
@@ -191,12 +194,57 @@ def test_analysed_once_factored_every_step(monkeypatch: pytest.MonkeyPatch) -> N
     V, F = shapes.cap(6)
     solver = IsometricSolver(V, F)
     first = solver.refine(tutte_embedding(V, F))
-    # The last factorisation is the one that showed there is nothing left to gain.
-    assert solver.factorisations == len(first.energy) and len(first.energy) > 3
-    second = solver.refine(1.1 * first.UV)
-    assert solver.factorisations == len(first.energy) + len(second.energy)
-    assert solver._cholesky.solves == solver.factorisations
+    assert solver.factorisations == 2 and len(first.energy) == 6
+    # A solve for each step, one that shows there is nothing left to gain, and one that showed a new factor was due.
+    assert solver._cholesky.solves == 7
+    solver.refine(1.1 * first.UV)
+    assert solver.factorisations == 3
     assert Watched.made == 1
+
+
+def test_steps_by_an_earlier_factor_end_where_newton_ends(monkeypatch: pytest.MonkeyPatch) -> None:
+    for mesh in (shapes.cap(10, 1.9), shapes.random_disk(4, 200, 0.2), shapes.wavy()):
+        start = tutte_embedding(*mesh)
+        solvers = [IsometricSolver(*mesh) for _ in range(2)]
+        frugal = solvers[0].refine(start)
+        monkeypatch.setattr(isometric, "_CONTRACTION", 0.0)
+        newton = solvers[1].refine(start)
+        monkeypatch.undo()
+        assert solvers[1].factorisations == len(newton.energy) > solvers[0].factorisations
+        assert frugal.energy[-1] - 4 <= (1 + 2e-4) * (newton.energy[-1] - 4)
+
+
+def test_gradient_alone_is_the_one_beside_the_hessian() -> None:
+    _, _, solver, u = stretched(3, 0.9, 0.05)
+    both, _ = derivatives(solver, u)
+    np.testing.assert_allclose(gradient_of(u, solver.F, solver.gradients, solver.weight), both, rtol=1e-9, atol=1e-12)
+
+
+@few
+@given(seeds)
+def test_best_scale_and_flips_are_those_of_the_measure(seed: int) -> None:
+    V, F, solver, u = stretched(seed, 1.3, 0.15)
+    s = singular_values(V, F, u)
+    scale, thinnest = solver.best_scale(u)
+    assert scale == pytest.approx(best_scale(V, F, u), rel=1e-9)
+    assert thinnest == pytest.approx(s[:, 1].min() / s[:, 0].max(), rel=1e-9, abs=1e-12)
+    assert not solver.best_scale(np.full_like(u, np.nan))[1] > 0
+
+
+@few
+@given(seeds)
+def test_pattern_is_that_of_the_triangles_blocks(seed: int) -> None:
+    V, F = shapes.random_disk(seed, 30)
+    indptr, indices, place = vertex_pattern(F, len(V))
+    joined = np.zeros((2 * len(V), 2 * len(V)), dtype=bool)
+    for face in F:
+        unknown = np.r_[2 * face, 2 * face + 1]
+        joined[np.ix_(unknown, unknown)] = True
+    columns = np.repeat(np.arange(2 * len(V)), np.diff(indptr))
+    assert set(zip(indices, columns, strict=True)) == set(zip(*np.nonzero(np.tril(joined)), strict=True))
+    assert all((np.diff(indices[a:b]) > 0).all() for a, b in itertools.pairwise(indptr))
+    ends = np.stack([F, F[:, [1, 2, 0]]], axis=2)
+    np.testing.assert_array_equal(indices[indptr[2 * ends.min(axis=2)] + 2 + 2 * place], 2 * ends.max(axis=2))
 
 
 def test_stops_after_the_steps_it_is_given() -> None:

@@ -8,13 +8,20 @@ import skinfab.flatten.disk as disk
 from skinfab.flatten.bff import flatten_scaled
 from skinfab.flatten.classic import arap
 from skinfab.flatten.distortion import measure
-from skinfab.flatten.rigid_start import rigid_steps
+from skinfab.flatten.isometric import rest_triangles
+from skinfab.flatten.laplacian import intrinsic
+from skinfab.flatten.rigid_start import _cotangents, rigid_steps
 
 
 def test_many_steps_are_libigl_s_arap() -> None:
     V, F = shapes.cap(8, 1.0)
     ours = rigid_steps(V, F, flatten_scaled(V, F), steps=400)
     assert measure(V, F, ours).mean == pytest.approx(measure(V, F, arap(V, F)).mean, abs=2e-4)
+
+
+def test_weights_are_the_cotangents() -> None:
+    V, F = shapes.random_disk(7, 40)
+    np.testing.assert_allclose(_cotangents(rest_triangles(V, F)), intrinsic(V, F).cotangent, rtol=1e-7, atol=1e-9)
 
 
 def test_a_sheet_comes_back_to_its_shape() -> None:
