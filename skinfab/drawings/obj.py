@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from skinfab.decimals import counts, write_rows
 from skinfab.errors import InputError
 from skinfab.files import atomic_write
 from skinfab.mesh.model import Mesh
@@ -47,8 +48,8 @@ def write_flat_obj(mesh: Mesh, pieces: Sequence[Piece], offsets: NDArray[np.floa
     text = b"".join(
         [
             f"# skinfab: v is {' '.join(mesh.name.split())} in mm, vt its flat pieces in mm\n".encode(),
-            _lines("v %.12g %.12g %.12g\n", mesh.V),
-            _lines("vt %.12g %.12g\n", flat),
+            write_rows(b"v", mesh.V),
+            write_rows(b"vt", flat),
             _face_lines(mesh.F, corners, len(flat)),
         ]
     )
@@ -63,19 +64,14 @@ def _face_lines(F: NDArray[np.int64], corners: NDArray[np.int64], n_flat: int) -
     """``f v/vt v/vt v/vt`` a face: each flat point belongs to one vertex, so that ``v/vt`` is made once for all faces about it."""
     vertex = np.zeros(n_flat, dtype=np.int64)
     vertex[corners] = F
-    words = np.array(_lines("%d/%d\n", np.column_stack([vertex, np.arange(n_flat)]) + 1).split(), dtype=np.bytes_)
-    letters = words.view(np.uint8).reshape(n_flat, -1)  # padded with zeros
+    word = [counts(vertex + 1), np.full((n_flat, 1), ord("/"), np.uint8), counts(np.arange(1, n_flat + 1))]
+    letters = np.hstack([np.full((n_flat, 1), ord(" "), np.uint8), *word])  # padded with zeros
     parts = []
     for start in range(0, len(corners), _AT_A_TIME):
         some = corners[start : start + _AT_A_TIME]
-        block = np.full((len(some), 3, letters.shape[1] + 1), ord(" "), dtype=np.uint8)
-        block[:, :, 1:] = letters[some]
-        ends = np.tile(np.frombuffer(b"f\n", dtype=np.uint8), (len(some), 1))
-        line = np.hstack([ends[:, :1], block.reshape(len(some), -1), ends[:, 1:]]).ravel()
+        line = np.empty((len(some), 3 * letters.shape[1] + 2), dtype=np.uint8)
+        line[:, 0], line[:, -1] = ord("f"), ord("\n")
+        line[:, 1:-1] = letters[some].reshape(len(some), -1)
+        line = line.ravel()
         parts.append(line[line != 0].tobytes())
     return b"".join(parts)
-
-
-def _lines(form: str, rows: NDArray[np.float64] | NDArray[np.int64]) -> bytes:
-    """One line a row: a single % over all values is several times faster than a loop or savetxt."""
-    return ((form * len(rows)) % tuple(rows.ravel().tolist())).encode()

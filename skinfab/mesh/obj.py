@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import re
-import warnings
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from skinfab.decimals import read_floats, read_ints, words
 from skinfab.errors import InputError
 from skinfab.mesh.polygons import triangulate
 
@@ -140,24 +140,37 @@ def _numbers(text: Bytes, starts: IntArray, ends: IntArray, kind: type) -> tuple
         part = part[keep]
         lengths = ends + 1 - starts
         starts = np.concatenate([[0], np.cumsum(lengths)[:-1]])
+        ends = starts + lengths - 1
     part[starts] = _SPACE
-    space = part <= _SPACE
-    slash = part == _SLASH
-    if slash.any():
-        at = np.arange(len(part), dtype=np.int32 if len(part) < 2**31 else np.int64)
-        after_slash = np.maximum.accumulate(np.where(slash, at, -1)) > np.maximum.accumulate(np.where(space, at, -1))
-        part[after_slash] = _SPACE
-        space |= after_slash
-    token = np.zeros(len(part), np.int32)
-    token[1:] = space[:-1] & ~space[1:]
-    counts = np.add.reduceat(token, starts).astype(np.int64)
-    with warnings.catch_warnings():
-        warnings.simplefilter("error", DeprecationWarning)
-        try:
-            values: NDArray[Any] = np.fromstring(part.tobytes(), dtype=kind, sep=" ")
-        except (DeprecationWarning, ValueError):
-            return None  # read line by line, which says what is wrong and where
-    return (values, counts) if len(values) == counts.sum() else None
+    if (part == _SLASH).any() and not _blank_after_slash(part):
+        return None
+    first, last = words(part)
+    values = (read_ints if kind is np.int64 else read_floats)(part, first, last)
+    return None if values is None else (values, _words_on_lines(first, last, starts, ends))
+
+
+def _blank_after_slash(part: Bytes) -> bool:
+    """``7/3/5`` becomes ``7``; False where nothing stands before a slash."""
+    slash = np.flatnonzero(part == _SLASH)
+    first, last = words(part)
+    word = np.searchsorted(first, slash, side="right") - 1
+    leading = np.ones(len(slash), dtype=bool)
+    leading[1:] = word[1:] != word[:-1]
+    if (slash == first[word]).any():
+        return False
+    step = np.zeros(len(part), np.int8)
+    step[slash[leading]] = 1
+    step[last[word[leading]]] = -1
+    part[np.cumsum(step, dtype=np.int8).astype(bool)] = _SPACE
+    return True
+
+
+def _words_on_lines(first: IntArray, last: IntArray, starts: IntArray, ends: IntArray) -> IntArray:
+    """How many of the words each line has."""
+    each = len(first) // len(starts)
+    if each * len(starts) == len(first) and each and (first[::each] >= starts).all() and (last[each - 1 :: each] <= ends).all():
+        return np.full(len(starts), each)
+    return np.diff(np.searchsorted(first, starts), append=len(first))
 
 
 def _read_lines(data: bytes, name: str) -> _Polygons:
@@ -168,20 +181,20 @@ def _read_lines(data: bytes, name: str) -> _Polygons:
     face_line: list[int] = []
     before: list[int] = []
     for number, line in _logical_lines(data):
-        words = line.split(b"#", 1)[0].split()
-        if not words:
+        tokens = line.split(b"#", 1)[0].split()
+        if not tokens:
             continue
-        if words[0] == b"v":
-            if len(words) < 4:
+        if tokens[0] == b"v":
+            if len(tokens) < 4:
                 raise InputError(
-                    f"{name} line {number}: a vertex needs three numbers, this one has {len(words) - 1}; export the mesh again"
+                    f"{name} line {number}: a vertex needs three numbers, this one has {len(tokens) - 1}; export the mesh again"
                 )
-            V.append([_float(word, name, number) for word in words[1:4]])
+            V.append([_float(word, name, number) for word in tokens[1:4]])
             vertex_line.append(number)
-        elif words[0] == b"f":
-            if len(words) < 4:
-                raise InputError(f"{name} line {number}: a face needs three corners, this one has {len(words) - 1}; remove the line")
-            faces.append(np.array([_index(word, name, number) for word in words[1:]], dtype=np.int64))
+        elif tokens[0] == b"f":
+            if len(tokens) < 4:
+                raise InputError(f"{name} line {number}: a face needs three corners, this one has {len(tokens) - 1}; remove the line")
+            faces.append(np.array([_index(word, name, number) for word in tokens[1:]], dtype=np.int64))
             face_line.append(number)
             before.append(len(V))
     corners = np.concatenate(faces) if faces else np.zeros(0, np.int64)

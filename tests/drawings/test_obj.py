@@ -38,10 +38,10 @@ def test_read_back_is_identical_in_face_order(tmp_path: Path) -> None:
     offsets = np.array([[0.0, 0.0], [1 / 3 + 100, 1e-5]])
     write_flat_obj(mesh, pieces, offsets, tmp_path / "flat.obj")
     V, TC, _, F, FTC, _ = igl.readOBJ(str(tmp_path / "flat.obj"))
-    np.testing.assert_allclose(V, mesh.V, rtol=1e-11, atol=1e-12)
+    np.testing.assert_allclose(V, mesh.V, rtol=1e-12, atol=1e-12)
     assert np.array_equal(F, mesh.F)
     for piece, offset in zip(pieces, offsets, strict=True):
-        np.testing.assert_allclose(TC[FTC[piece.faces]], (piece.UV + offset)[piece.F], rtol=1e-11, atol=1e-12)
+        np.testing.assert_allclose(TC[FTC[piece.faces]], (piece.UV + offset)[piece.F], rtol=1e-12, atol=1e-12)
 
 
 def test_faces_missing_or_double_are_refused(tmp_path: Path) -> None:
