@@ -17,7 +17,7 @@ from skinfab.errors import InputError
 from skinfab.flatten.bff_curve import close_curve, scaled_lengths, vertex_scale
 from skinfab.flatten.bff_target import fit_circle, fit_curve
 from skinfab.flatten.distortion import best_scale
-from skinfab.flatten.laplacian import intrinsic
+from skinfab.flatten.laplacian import Intrinsic, intrinsic
 from skinfab.flatten.steklov import NeumannToDirichlet
 from skinfab.linalg import Cholesky
 from skinfab.mesh.topology import Topology
@@ -39,6 +39,8 @@ class BffSolver:
         A disk: one component, one boundary loop, Euler number 1; every vertex in use.
     topology : Topology, optional
         Of `F`, where it is at hand.
+    robust : bool
+        Over the intrinsic Delaunay triangulation: fewer flips where triangles are obtuse; `flatten_robust` knows where.
 
     Attributes
     ----------
@@ -63,12 +65,13 @@ class BffSolver:
     [1.0, 1.0, 1.0, 1.0, 0.0]
     """
 
-    def __init__(self, V: FloatArray, F: NDArray[np.int64], *, topology: Topology | None = None) -> None:
-        self.boundary = loop = require_disk(topology or Topology(F), len(V))
+    def __init__(self, V: FloatArray, F: NDArray[np.int64], *, topology: Topology | None = None, robust: bool = False) -> None:
+        topology = topology or Topology(F)
+        self.boundary = loop = require_disk(topology, len(V))
         if not np.isfinite(V).all():
             wrong = int(np.flatnonzero(~np.isfinite(V).all(axis=1))[0])
             raise InputError(f"vertex {wrong} has a coordinate that is not a finite number; mend it in the mesh")
-        corners = intrinsic(V, F)
+        corners = _delaunay(V, F, topology) if robust else intrinsic(V, F)
         self.lengths_mm = np.linalg.norm(V[np.roll(loop, -1)] - V[loop], axis=1)
         inner = np.ones(len(V), dtype=bool)
         inner[loop] = False
@@ -201,6 +204,12 @@ class BffSolver:
                 f"{what} are {b} finite numbers, one for each vertex or edge of the boundary; this has the shape {values.shape}"
             )
         return values
+
+
+def _delaunay(V: FloatArray, F: NDArray[np.int64], topology: Topology) -> Intrinsic:
+    from skinfab.flatten.delaunay import delaunay_corners  # a compiler loads with it, for the few meshes that need it
+
+    return delaunay_corners(V, F, topology=topology)
 
 
 def flatten_disk(V: FloatArray, F: NDArray[np.int64], *, scale: FloatArray | None = None, topology: Topology | None = None) -> FloatArray:

@@ -65,6 +65,19 @@ def intrinsic(V: FloatArray, F: NDArray[np.int64]) -> Intrinsic:
     return Intrinsic(F, len(V), np.arctan2(twice_area[:, None], dot), dot / twice_area[:, None])
 
 
+def corners_of_lengths(length: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Angles and cotangents, (m, 3) each, of triangles given by the edges opposite their corners, (m, 3) mm.
+
+    Examples
+    --------
+    >>> angle, cotangent = corners_of_lengths(np.array([[5.0, 4, 3]]))
+    >>> np.degrees(angle).round(6).tolist(), cotangent.round(6).tolist()
+    ([[90.0, 53.130102, 36.869898]], [[0.0, 0.75, 1.333333]])
+    """
+    dot, twice_area = _from_lengths(length)
+    return np.arctan2(twice_area[:, None], dot), dot / twice_area[:, None]
+
+
 def _from_lengths(length: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Dot products at the corners (m, 3) and twice the areas (m,) of triangles given by their edge lengths, mm^2."""
     a, b, c = length.T
