@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skinfab.errors import InputError
-from skinfab.flatten.bff import flatten_disk
 from skinfab.flatten.cones import cone_scale, place_cones
 from skinfab.flatten.distortion import best_scale
+from skinfab.flatten.robust import flatten_robust
 from skinfab.mesh.model import Mesh
 from skinfab.seams.cut import OpenPiece, open_pieces
 from skinfab.seams.disk import cut_to_disk
@@ -92,5 +92,5 @@ def flatten_with_cones(
         raise InputError("a closed surface needs at least two cones to open it; use --cones 8 or --cones auto")
     u, _ = cone_scale(mesh.V, mesh.F, cones, topology=topology)
     V = mesh.V[piece.vertices]
-    uv = flatten_disk(V, piece.F, scale=u[piece.vertices], topology=piece.topology)
+    uv = flatten_robust(V, piece.F, scale=u[piece.vertices], topology=piece.topology)
     return cut, piece, uv * best_scale(V, piece.F, uv), cones
