@@ -111,9 +111,20 @@ TURNING_SUM_RAD = 1e-5
 #: Target shapes are reached when no boundary vertex moves by more than this fraction of the shape's size.
 TARGET_MOVE = 1e-10
 
+#: ... and so nearly that no more need be done: a tenth of a micrometre on a hand's width.
+TARGET_SETTLED = 1e-6
+
+#: Sliding along a target curve stops when a step lowers the conformal energy by less than this fraction: the map itself is
+#: only as near to conformal as the mesh is fine.
+CURVE_DECREASE = 1e-3
+
 #: An edge is flipped when its two cotangents sum to less than minus this fraction of their sizes: rounding flips none.
 DELAUNAY_COTANGENT = 1e-9
 
 #: Weight (half the cotangents' sum) of an edge that had a negative one but could not be flipped: a third of an equilateral
 #: mesh's. From 1e-4 to 0.2 no fewer triangles flip, but the few concerned come out a hundred times less squashed.
 LEAST_EDGE_WEIGHT = 0.2
+
+#: A layout carried over from a simplified mesh is kept where the mean d could lose at most this: a twenty-fifth of what
+#: separates a perfect piece from the usual bound of 4.05.
+SIMPLIFY_EFFECT = 0.002

@@ -15,7 +15,7 @@ from scipy.sparse import csc_array
 
 from skinfab.errors import InputError
 from skinfab.flatten.bff_curve import close_curve, scaled_lengths, vertex_scale
-from skinfab.flatten.bff_target import fit_circle, fit_curve
+from skinfab.flatten.bff_target import fit_circle, fit_curve, require_upright
 from skinfab.flatten.distortion import best_scale
 from skinfab.flatten.laplacian import Intrinsic, intrinsic
 from skinfab.flatten.steklov import NeumannToDirichlet
@@ -72,24 +72,32 @@ class BffSolver:
             wrong = int(np.flatnonzero(~np.isfinite(V).all(axis=1))[0])
             raise InputError(f"vertex {wrong} has a coordinate that is not a finite number; mend it in the mesh")
         corners = _delaunay(V, F, topology) if robust else intrinsic(V, F)
+        self._V, self._F = V, F
         self.lengths_mm = np.linalg.norm(V[np.roll(loop, -1)] - V[loop], axis=1)
         inner = np.ones(len(V), dtype=bool)
         inner[loop] = False
         self._free = free = np.flatnonzero(inner)
-        L = corners.stiffness()
+        self._L = L = corners.stiffness()
         self._L_bf, self._L_bb = csc_array(L[loop][:, free]), csc_array(L[loop][:, loop])
         self._cholesky = Cholesky(csc_array(L[free][:, free])) if len(free) else None
         self._curvature = np.where(inner, 2 * np.pi, np.pi) - corners.angle_sum
 
     @property
     def factorisations(self) -> int:
-        """How many sparse factorisations were done: 1, or 0 without inner vertices."""
-        return self._cholesky.factorisations if self._cholesky else 0
+        """How many sparse factorisations were done.
+
+        1, or 0 without inner vertices; one more from the first `disk`, `angles`, `curve` or `scale_of` on.
+        """
+        return sum(factor.factorisations for factor in self._factors)
 
     @property
     def solves(self) -> int:
-        """How many times the factor was used so far; several right-hand sides at once count as one."""
-        return self._cholesky.solves if self._cholesky else 0
+        """How many times a factor was used so far; several right-hand sides at once count as one."""
+        return sum(factor.solves for factor in self._factors)
+
+    @property
+    def _factors(self) -> list[Cholesky | NeumannToDirichlet]:
+        return [factor for factor in (self._cholesky, self.__dict__.get("_to_dirichlet")) if factor is not None]
 
     def free(self) -> FloatArray:
         """Scale factor 1 along the boundary: of all conformal flattenings the one with the least area distortion (4.2); (n, 2) mm."""
@@ -142,15 +150,16 @@ class BffSolver:
         Returns
         -------
         (n, 2) float64, mm
-            At the target's own size and place, the boundary on it in any case. The map inside is as good as the
-            rounds settle: to rounding where border and target are smooth, to and fro by a hundredth of the size where
-            the object's border has corners of its own. A triangle whose three vertices are on the boundary lies
-            flat where they fall on one straight side.
+            At the target's own size and place, the boundary on it, every triangle the right way up. Smooth borders and
+            targets settle to rounding; where one has corners the boundary is the one of the least conformal energy.
 
         Raises
         ------
         InputError
             Fewer than three points, one that is not finite, or a curve that does not run counter-clockwise.
+        RefusedError
+            A triangle would be turned over (at a corner that turns inwards, most often), or be flattened to a line
+            because all its vertices are on the boundary and fall on one straight side.
         """
         target = np.asarray(target_points, dtype=np.float64)
         if target.ndim != 2 or target.shape[1] != 2 or len(target) < 3 or not np.isfinite(target).all():
@@ -158,15 +167,25 @@ class BffSolver:
         area = (target[:, 0] * np.roll(target[:, 1], -1) - np.roll(target[:, 0], -1) * target[:, 1]).sum() / 2
         if not area > 0:
             raise InputError(f"the target curve encloses {area:g} mm^2; give its points counter-clockwise, without crossing itself")
-        return self._extended(fit_curve(self.lengths_mm, self.scale_of, target))
+        inverse = self._to_dirichlet.pinned
+        uv = self._extended(fit_curve(self.lengths_mm, target, scale_of=self.scale_of, slope_of=self._slope, values_of=inverse))
+        require_upright(self._V, self._F, uv, "the target curve")
+        return uv
 
     def disk(self) -> FloatArray:
         """The unit disk (6.2), (n, 2) without unit: every boundary vertex on the circle about (0, 0).
 
         Of the conformal maps onto the disk, which differ by a Moebius transformation, the one whose boundary scale
         factors are balanced: u has no first harmonic around the circle. `boundary[0]` lies at (1, 0).
+
+        Raises
+        ------
+        RefusedError
+            A triangle would be turned over.
         """
-        return self._extended(fit_circle(self.lengths_mm, self.scale_of))
+        uv = self._extended(fit_circle(self.lengths_mm, self.scale_of))
+        require_upright(self._V, self._F, uv, "the disk")
+        return uv
 
     def scale_of(self, turning: FloatArray) -> FloatArray:
         """(b,) log scale factors, of mean zero, that make the boundary turn by (b,) rad (Neumann to Dirichlet, 4.1)."""
@@ -174,7 +193,7 @@ class BffSolver:
 
     @cached_property
     def _to_dirichlet(self) -> NeumannToDirichlet:
-        return NeumannToDirichlet(self._L_bb, self._L_bf, self._cholesky)
+        return NeumannToDirichlet(self._L, self.boundary)
 
     @cached_property
     def _free_turning(self) -> FloatArray:
@@ -182,11 +201,15 @@ class BffSolver:
 
     def _turning(self, u: FloatArray) -> FloatArray:
         """New boundary curvature: the old one with the normal derivative of u (4.1)."""
-        slope = self._L_bb @ u
-        if self._cholesky is not None:
-            slope = slope + self._L_bf @ self._cholesky.solve(-self._curvature[self._free] - self._L_bf.T @ u)
-        turning: FloatArray = self._curvature[self.boundary] + slope
+        turning: FloatArray = self._curvature[self.boundary] + self._slope(u, self._curvature[self._free])
         return turning
+
+    def _slope(self, values: FloatArray, source: FloatArray | float = 0.0) -> FloatArray:
+        """Normal derivative, integrated at each boundary vertex, of the function with L f = -source inside and these boundary values."""
+        slope: FloatArray = self._L_bb @ values
+        if self._cholesky is not None:
+            slope = slope + self._L_bf @ self._cholesky.solve(-source - self._L_bf.T @ values)
+        return slope
 
     def _extended(self, curve: FloatArray) -> FloatArray:
         """Boundary curve and the harmonic functions inside (4.4)."""

@@ -1,4 +1,4 @@
-"""Boundary curves of BFF: the closing of a polygon, and places along a given one."""
+"""Boundary curves of BFF: the closing of a polygon, and its turning angles."""
 
 from __future__ import annotations
 
@@ -55,31 +55,6 @@ def close_curve(length: FloatArray, turning: FloatArray) -> FloatArray:
     closed = length - length * (T.T @ np.linalg.solve(weighted @ T.T, T @ length))
     steps = closed * T
     return np.concatenate([np.zeros((1, 2)), np.cumsum(steps, axis=1).T[:-1]])
-
-
-def along(curve: FloatArray, length: FloatArray) -> FloatArray:
-    """Points on a closed polygon, parted as the lengths are; the first is the polygon's first.
-
-    Parameters
-    ----------
-    curve : (k, 2) float, mm
-        Not repeated at the end.
-    length : (b,) float
-        The way along the curve from point k to k + 1 is in proportion to it.
-
-    Returns
-    -------
-    (b, 2) float, mm
-
-    Examples
-    --------
-    >>> along(np.array([[0.0, 0], [1, 0], [1, 1], [0, 1]]), np.ones(8))[:3].tolist()
-    [[0.0, 0.0], [0.5, 0.0], [1.0, 0.0]]
-    """
-    closed = np.vstack([curve, curve[:1]])
-    way = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(closed, axis=0), axis=1))])
-    at = np.concatenate([[0.0], np.cumsum(length)[:-1]]) * (way[-1] / length.sum())
-    return np.column_stack([np.interp(at, way, closed[:, 0]), np.interp(at, way, closed[:, 1])])
 
 
 def turning_of(curve: FloatArray) -> FloatArray:

@@ -1,0 +1,102 @@
+"""Where BFF's target shapes and cones fail: the plain method is shown to, then what is done instead."""
+
+import numpy as np
+import pytest
+import shapes
+
+from skinfab.errors import RefusedError
+from skinfab.flatten.bff import BffSolver
+from skinfab.flatten.bff_curve import scaled_lengths, turning_of
+from skinfab.flatten.bff_descent import conformal_energy
+from skinfab.flatten.distortion import singular_values
+
+
+def along(curve: np.ndarray, length: np.ndarray) -> np.ndarray:
+    closed = np.vstack([curve, curve[:1]])
+    way = np.r_[0, np.cumsum(np.linalg.norm(np.diff(closed, axis=0), axis=1))]
+    at = np.r_[0, np.cumsum(length)[:-1]] * (way[-1] / length.sum())
+    return np.column_stack([np.interp(at, way, closed[:, k]) for k in (0, 1)])
+
+
+def plain_rounds(solver: BffSolver, target: np.ndarray, rounds: int = 30) -> tuple[np.ndarray, float]:
+    """The iteration as published: the round that moved least, and how far it moved as a fraction of the size."""
+    points = best = along(target, solver.lengths_mm)
+    least = np.inf
+    for _ in range(rounds):
+        before, points = points, along(target, scaled_lengths(solver.lengths_mm, solver.scale_of(turning_of(points))))
+        moved = np.abs(points - before).max()
+        if moved < least:
+            best, least = points, moved
+    return best, least / np.linalg.norm(np.ptp(target, axis=0))
+
+
+def egg(rings: int):
+    V, F = shapes.cap(rings)
+    x, y, z = V.T
+    return np.column_stack([1.4 * x + 0.2 * x * y, y, z + 0.15 * np.sin(3 * x + y)]), F
+
+
+def star(points: int = 720) -> np.ndarray:
+    a = 2 * np.pi * np.arange(points) / points
+    r = 2 + 0.6 * np.cos(5 * a)
+    return np.column_stack([r * np.cos(a), r * np.sin(a)])
+
+
+RECTANGLE = np.array([[0.0, 0], [2, 0], [2, 1], [0, 1]])
+ANGLE = np.array([[0.0, 0], [2, 0], [2, 1], [1, 1], [1, 2], [0, 2]])
+
+
+def energy_of(solver: BffSolver, points: np.ndarray) -> float:
+    energy, _, area = conformal_energy(points, solver._slope)
+    return energy / area
+
+
+@pytest.mark.parametrize(
+    ("mesh", "target", "flips", "better"),
+    [
+        (shapes.wavy(20), star(), True, 2.0),
+        (egg(24), star(), True, 2.0),
+        (egg(24), RECTANGLE, False, 1.2),
+    ],
+    ids=["square in a star", "egg in a star", "egg in a rectangle"],
+)
+def test_rounds_that_do_not_settle(mesh, target: np.ndarray, flips: bool, better: float) -> None:
+    """To and fro for ever; the boundary slid along to the least conformal energy lays every triangle the right way up."""
+    V, F = mesh
+    solver = BffSolver(V, F)
+    plain, moved = plain_rounds(solver, target)
+    assert moved > 1e-7
+    assert (singular_values(V, F, solver._extended(plain))[:, 1] <= 0).any() == flips
+    uv = solver.curve(target)
+    assert (singular_values(V, F, uv)[:, 1] > 0).all()
+    assert better * energy_of(solver, uv[solver.boundary]) < energy_of(solver, plain)
+    closed = np.vstack([target, target[:1]])
+    a, d = closed[:-1], np.diff(closed, axis=0)
+    off = uv[solver.boundary][:, None] - a
+    t = np.clip((off * d).sum(axis=2) / (d**2).sum(axis=1), 0, 1)
+    assert np.linalg.norm(off - t[:, :, None] * d, axis=2).min(axis=1).max() < 1e-9
+
+
+@pytest.mark.parametrize(("mesh", "target"), [(egg(24), ANGLE), (shapes.cylinder_sheet(48, 20), ANGLE)])
+def test_a_corner_that_turns_inwards_is_refused(mesh, target: np.ndarray) -> None:
+    V, F = mesh
+    solver = BffSolver(V, F)
+    assert (singular_values(V, F, solver._extended(plain_rounds(solver, target)[0]))[:, 1] < 0).sum() > 100
+    with pytest.raises(RefusedError, match=r"\d+ of \d+ triangles come out upside down inside the target curve; give a rounder curve"):
+        solver.curve(target)
+
+
+def test_a_triangle_with_three_boundary_vertices_on_a_straight_side_is_refused() -> None:
+    V, F = shapes.wavy(20)
+    solver = BffSolver(V, F)
+    flat = solver._extended(along(RECTANGLE, np.roll(solver.lengths_mm, 7)))
+    assert (np.abs(singular_values(V, F, flat)[:, 1]) < 1e-9).any()
+    with pytest.raises(RefusedError, match=r"\d of 800 triangles come out without area on the target curve, first triangle \d+: .* bulge"):
+        solver.curve(RECTANGLE)
+
+
+def test_negative_cotangents_turn_triangles_of_the_disk_over() -> None:
+    V, F = shapes.random_disk(5, 100, 1.0)
+    solver = BffSolver(V, F)
+    with pytest.raises(RefusedError, match="upside down inside the disk"):
+        solver.disk()
