@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from skinfab.flatten.distortion import Distortion
+    from skinfab.flatten.methods import Flatten
+    from skinfab.flatten.simplified import Simplified
     from skinfab.mesh.model import Mesh
     from skinfab.pieces import Piece
 
@@ -52,6 +54,12 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     p.add_argument(
         "--max-distortion", type=steps.bound, default=4.05, metavar="D", help="for auto where it cuts: mean d of a piece at most"
     )
+    p.add_argument(
+        "--simplify",
+        choices=("auto", "off"),
+        default="off",
+        help="auto (for auto and isometric): flatten fewer triangles where the mean d is within 0.002 of that of all (default: off)",
+    )
     p.add_argument("--json", metavar="FILE", type=Path, help="write the figures to FILE as JSON")
     p.set_defaults(run=run, wrong_usage=p.error)
 
@@ -60,18 +68,27 @@ def run(args: argparse.Namespace) -> int:
     """Flatten, check, write, and say how good it is."""
     if args.cones is not None and args.method != "bff-cones":
         args.wrong_usage("--cones goes with --method bff-cones")
+    if args.simplify != "off" and args.method not in ("auto", "isometric"):
+        args.wrong_usage(
+            f"--simplify {args.simplify} goes with --method auto or isometric, whose aim is the least d; {args.method} has another"
+        )
     from skinfab.drawings.obj import write_flat_obj
     from skinfab.drawings.sheet import sheet_offsets
     from skinfab.files import atomic_write
 
     loaded = steps.load(args)
     began = time.perf_counter()
-    pieces, distortions = _flatten(args, loaded.mesh)
+    simplified: list[Simplified] = []
+    pieces, distortions = _flatten(args, loaded.mesh, simplified)
     seconds = time.perf_counter() - began
+    steps.say([found.sentence for found in simplified])
     _require_sound(args.method, pieces, distortions)
     write_flat_obj(loaded.mesh, pieces, sheet_offsets(pieces), args.output)
     if args.json:
         figures = _figures(args.method, loaded.mesh, pieces, distortions, seconds)
+        figures |= (
+            {"simplified": [{"n_faces": s.n_faces, "n_coarse": s.n_coarse, "effect": s.effect} for s in simplified]} if simplified else {}
+        )
         atomic_write(args.json, json.dumps(figures, indent=1, allow_nan=False) + "\n")
     for line in steps.piece_lines(pieces, distortions):
         print(line)
@@ -84,8 +101,8 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def _flatten(args: argparse.Namespace, mesh: Mesh) -> tuple[list[Piece], list[Distortion]]:
-    from skinfab.flatten.methods import method
+def _flatten(args: argparse.Namespace, mesh: Mesh, simplified: list[Simplified]) -> tuple[list[Piece], list[Distortion]]:
+    """Pieces and how good they are; what `--simplify` did to each goes into `simplified`."""
     from skinfab.seams.cut import open_pieces
 
     if args.method == "bff-cones":
@@ -97,14 +114,32 @@ def _flatten(args: argparse.Namespace, mesh: Mesh) -> tuple[list[Piece], list[Di
         _, piece, uv, _ = flatten_with_cones(mesh, cones=listed, count=count)
         return _as_pieces(mesh, [(piece.faces, piece.vertices, piece.F, uv)])
     opened = open_pieces(mesh, mesh.topology.is_boundary)
+    flatten = _method(args, simplified)
     if args.method == "auto":
         if all(piece.is_disk for piece in opened):
-            flat = [(p.faces, p.vertices, p.F, method("isometric")(mesh.V[p.vertices], p.F)) for p in opened]
+            flat = [(p.faces, p.vertices, p.F, flatten(mesh.V[p.vertices], p.F)) for p in opened]
             pieces, distortions = _as_pieces(mesh, flat)
             if not any(d.overlap_mm2 > 0 or d.flipped for d in distortions):
                 return pieces, distortions
+        if args.simplify != "off":
+            simplified.clear()
+            steps.say(["--simplify has no part in an automatic cut, whose pieces are flattened on all their triangles"])
         return _cut(mesh, args.max_distortion)
-    return _as_pieces(mesh, [(p.faces, p.vertices, p.F, method(args.method)(mesh.V[p.vertices], p.F)) for p in opened])
+    return _as_pieces(mesh, [(p.faces, p.vertices, p.F, flatten(mesh.V[p.vertices], p.F)) for p in opened])
+
+
+def _method(args: argparse.Namespace, simplified: list[Simplified]) -> Flatten:
+    from skinfab.flatten.methods import method
+
+    if args.simplify == "off":
+        return method("isometric" if args.method == "auto" else args.method)
+    from skinfab.flatten.simplified import flatten_simplified
+
+    def flatten(V: NDArray[np.float64], F: NDArray[np.int64]) -> NDArray[np.float64]:
+        simplified.append(flatten_simplified(V, F))
+        return simplified[-1].UV
+
+    return flatten
 
 
 def _cut(mesh: Mesh, max_distortion: float) -> tuple[list[Piece], list[Distortion]]:

@@ -165,6 +165,17 @@ class IsometricSolver:
         stretch, squash, least, largest = extremes(np.ascontiguousarray(UV), self.F, self.gradients, self.weight)
         return ((squash / stretch) ** 0.25 if stretch > 0 else 1.0), (least / largest if largest > 0 else -1.0)
 
+    def hessian(self, UV: FloatArray) -> tuple[csc_array, FloatArray]:
+        """The mean d's projected Hessian at a layout without flips, (2n, 2n) lower, positive definite, and its gradient (2n,)."""
+        data, gradient = assemble(UV, self.F, self.gradients, self.weight, self._place, self._indptr)
+        self._hold(data)
+        return csc_array((data, self._indices, self._indptr), shape=(2 * self.n, 2 * self.n)), gradient
+
+    def descend(self, UV: FloatArray, step: FloatArray, slope: float) -> tuple[FloatArray, float]:
+        """`UV` as far along `step` (n, 2) as d falls by its share of `slope` and nothing flips, and the mean d there."""
+        _, u, energy = self._line_search(UV, step, slope, self._energy(UV, None), None)
+        return u, energy
+
     def _energy(self, u: FloatArray, apart: Apart | None) -> float:
         d = energies(u, self.F, self.gradients, self.weight)
         return d + apart.weight * barrier_energy(u, apart.loop, apart.reach) if apart and np.isfinite(d) else d
@@ -184,10 +195,13 @@ class IsometricSolver:
         step = self._cholesky.solve(-gradient)
         return step.reshape(-1, 2), float(gradient @ step)
 
-    def _factor(self, data: FloatArray) -> None:
+    def _hold(self, data: FloatArray) -> None:
         # The rigid motions cost nothing: a ridge far below the stiffness fixes them.
         diagonal = self._indptr[:-1]
         data[diagonal] += NEWTON_RIDGE * data[diagonal].mean()
+
+    def _factor(self, data: FloatArray) -> None:
+        self._hold(data)
         if self._cholesky is None:
             self._cholesky = Cholesky(csc_array((data, self._indices, self._indptr), shape=(2 * self.n, 2 * self.n)))
         else:
