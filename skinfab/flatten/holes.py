@@ -5,31 +5,88 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from skinfab.flatten.bff import BffSolver
+from skinfab.errors import InputError
 from skinfab.flatten.distortion import best_scale
+from skinfab.flatten.robust import flatten_robust
+from skinfab.mesh.polygons import triangulate
 from skinfab.mesh.topology import Topology
+from skinfab.tolerances import OVERLAP_FRACTION
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
+#: The triangulation of a bent-in hole takes time with the square of its edges, half a second for so many.
+_MOST_EDGES = 10_000
+
+
+def border_of(V: FloatArray, topology: Topology) -> int:
+    """Which boundary loop is the border of a disk with or without holes: the widest.
+
+    The one whose points lie farthest from their middle (root mean square, mm); a jagged hole may well be longer than the border.
+
+    Raises
+    ------
+    InputError
+        Several components, unused vertices, a closed surface, handles, or a coordinate that is not finite.
+
+    Examples
+    --------
+    >>> square = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
+    >>> border_of(square, Topology(np.array([[0, 1, 2], [0, 2, 3]])))
+    0
+    """
+    loops = topology.boundary_loops
+    components, _ = topology.face_components()
+    unused = len(V) - len(topology.used_vertices)
+    handles = (2 - len(loops) - topology.euler) // 2
+    why = ""
+    if components != 1:
+        why = f"this has {components} components; take them one by one"
+    elif unused:
+        why = f"this has {unused} unused vertices; remove them"
+    elif not loops:
+        why = "this is closed; cut it first (skinfab segment, or --method auto)"
+    elif handles:
+        why = f"this has {'a handle' if handles == 1 else f'{handles} handles'}; cut it first (skinfab segment, or --method auto)"
+    if why:
+        raise InputError(f"only a disk can be flattened, with holes or without: {why}")
+    if not np.isfinite(V).all():
+        wrong = int(np.flatnonzero(~np.isfinite(V).all(axis=1))[0])
+        raise InputError(f"vertex {wrong} has a coordinate that is not a finite number; mend it in the mesh")
+    return int(np.argmax([_width(V[loop]) for loop in loops]))
+
+
+def _width(line: FloatArray) -> float:
+    weight = _weights(line)
+    from_middle = ((line - _middle(line)) ** 2).sum(axis=1)
+    return float(weight @ from_middle / weight.sum()) if weight.sum() > 0 else 0.0
+
 
 def fill_holes(V: FloatArray, F: IntArray, *, topology: Topology | None = None) -> tuple[FloatArray, IntArray]:
-    """The mesh with a fan about a new vertex in every boundary loop but the longest (mm), which stays the border.
+    """The mesh with every hole filled: each boundary loop but the widest, which stays the border.
+
+    A hole is filled by a fan about a new vertex in its middle, or, where that would fold over itself, by triangles
+    between its own vertices.
 
     Parameters
     ----------
     V : (n, 3) float64, mm
     F : (m, 3) int64
-        One component.
+        One component of genus 0 with a boundary; every vertex in use.
     topology : Topology, optional
         Of `F`, where it is at hand.
 
     Returns
     -------
     V : (n + h, 3) float64, mm
-        The given vertices, then the middle of each of the h holes.
+        The given vertices, then the middle of each hole that has a fan.
     F : (m + k, 3) int64
-        The given faces, then the fans.
+        The given faces, then the fillings.
+
+    Raises
+    ------
+    InputError
+        Even with its holes filled it is no disk: closed, with a handle, or in several components.
 
     Examples
     --------
@@ -39,26 +96,54 @@ def fill_holes(V: FloatArray, F: IntArray, *, topology: Topology | None = None) 
     >>> W[6:].round(6).tolist(), len(G), Topology(G).euler
     ([[1.006066, 1.006066, 0.0]], 9, 1)
     """
-    loops = (topology or Topology(F)).boundary_loops
-    steps = [np.linalg.norm(V[np.roll(loop, -1)] - V[loop], axis=1) for loop in loops]
-    border = int(np.argmax([step.sum() for step in steps])) if loops else 0
+    topology = topology or Topology(F)
+    border = border_of(V, topology)
     middles: list[FloatArray] = []
-    fans: list[IntArray] = []
-    for k, (loop, step) in enumerate(zip(loops, steps, strict=True)):
+    fillings: list[IntArray] = []
+    for k, loop in enumerate(topology.boundary_loops):
         if k == border:
             continue
-        # The middle of the line, not of its vertices, whose spacing says nothing about the hole.
-        weight = step + np.roll(step, 1)
-        middles.append(weight @ V[loop] / weight.sum() if weight.sum() > 0 else V[loop].mean(axis=0))
-        centre = np.full(len(loop), len(V) + len(fans))
-        fans.append(np.column_stack([np.roll(loop, -1), loop, centre]))
-    if not fans:
-        return V, F
-    return np.vstack([V, *middles]), np.vstack([F, *fans])
+        middle = _middle(V[loop])
+        if _folds(V[loop], middle) and (inside := _between(V, loop, topology)) is not None:
+            fillings.append(inside)
+            continue
+        fillings.append(np.column_stack([np.roll(loop, -1), loop, np.full(len(loop), len(V) + len(middles))]))
+        middles.append(middle)
+    return (np.vstack([V, *middles]) if middles else V), (np.vstack([F, *fillings]) if fillings else F)
+
+
+def _middle(line: FloatArray) -> FloatArray:
+    """The middle of a closed line, not of its vertices, whose spacing says nothing about the hole."""
+    weight = _weights(line)
+    middle: FloatArray = weight @ line / weight.sum() if weight.sum() > 0 else line.mean(axis=0)
+    return middle
+
+
+def _weights(line: FloatArray) -> FloatArray:
+    """How much of a closed line belongs to each of its points, mm: the two edges beside it."""
+    step: FloatArray = np.linalg.norm(np.roll(line, -1, axis=0) - line, axis=1)
+    return step + np.roll(step, 1)
+
+
+def _folds(line: FloatArray, middle: FloatArray) -> bool:
+    """A fan about the middle has triangles that face against the rest."""
+    spoke = line - middle
+    normal = np.cross(spoke, np.roll(spoke, -1, axis=0))
+    return bool((normal @ normal.sum(axis=0) < 0).any())
+
+
+def _between(V: FloatArray, loop: IntArray, topology: Topology) -> IntArray | None:
+    """Triangles between the vertices of a hole; None where one would run along an edge that the mesh has already."""
+    if len(loop) > _MOST_EDGES:
+        return None
+    inside = triangulate(V, loop[::-1], np.array([len(loop)]))
+    filled = Topology(inside)
+    across = filled.E[~filled.is_boundary]
+    return inside if filled.edge_count.max() <= 2 and (topology.edge_ids(across) < 0).all() else None
 
 
 def flatten_filled(V: FloatArray, F: IntArray) -> FloatArray:
-    """Free-boundary BFF of a surface with or without holes, at the scale of the least d.
+    """Free-boundary BFF of a surface with or without holes, with the fewest flips, at the scale of the least d.
 
     Parameters
     ----------
@@ -83,5 +168,47 @@ def flatten_filled(V: FloatArray, F: IntArray) -> FloatArray:
     >>> float(np.linalg.norm(uv[5] - uv[4]).round(6))
     0.424264
     """
-    uv = BffSolver(*fill_holes(V, F)).free()[: len(V)]
+    topology = Topology(F)
+    W, G = fill_holes(V, F, topology=topology)
+    uv = flatten_robust(W, G, topology=topology if G is F else None, counted=len(F))[: len(V)]
     return uv * best_scale(V, F, uv)
+
+
+def flatten_least(V: FloatArray, F: IntArray, *, hopeless_above: float = np.inf) -> FloatArray:
+    """The least mean d of a surface with or without holes: `flatten_isometric`, then the holes left to themselves.
+
+    Where a hole's rim would come to lie on itself or on another, the layout with filled holes is kept.
+
+    Parameters
+    ----------
+    V : (n, 3) float64, mm
+    F : (m, 3) int64
+        One component of genus 0 with a boundary; every vertex in use.
+    hopeless_above : float
+        See `IsometricSolver.refine`.
+
+    Returns
+    -------
+    (n, 2) float64, mm
+        No triangle is flipped.
+
+    Raises
+    ------
+    InputError
+        Even with its holes filled it is no disk: closed, with a handle, or in several components.
+    """
+    from skinfab.flatten.disk import flatten_isometric
+    from skinfab.flatten.isometric import IsometricSolver
+    from skinfab.flatten.overlap import overlap_area
+
+    topology = Topology(F)
+    W, G = fill_holes(V, F, topology=topology)
+    if G is F:
+        return flatten_isometric(V, F, topology=topology, hopeless_above=hopeless_above)
+    filled = flatten_isometric(W, G)[: len(V)]
+    filled = filled * best_scale(V, F, filled)
+    freed = IsometricSolver(V, F).refine(filled, hopeless_above=hopeless_above).UV
+    allowed = OVERLAP_FRACTION * float(np.prod(np.ptp(freed, axis=0)))
+    if overlap_area(F, freed, topology=topology) <= overlap_area(F, filled, topology=topology) + allowed:
+        return freed
+    return filled

@@ -1,7 +1,7 @@
-"""The methods that flatten one disk, by name: to add one, add one entry.
+"""The methods that flatten one disk, with holes or without, by name: to add one, add one entry.
 
-An entry is ``module:function``; the function takes V (n, 3) and F (m, 3) of a disk and returns UV (n, 2) in
-mm. Modules are imported when asked for, so that a fast method does not wait for another's library.
+An entry is ``module:function``; the function takes V (n, 3) and F (m, 3) of one component of genus 0 with a
+boundary and returns UV (n, 2) in mm. Modules are imported when asked for, so that a fast method does not wait for another's library.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ Flatten = Callable[[NDArray[np.float64], NDArray[np.int64]], NDArray[np.float64]
 
 METHODS = {
     "bff": "skinfab.flatten.holes:flatten_filled",
-    "isometric": "skinfab.flatten.disk:flatten_isometric",
+    "isometric": "skinfab.flatten.holes:flatten_least",
     "lscm": "skinfab.flatten.classic:lscm",
     "harmonic": "skinfab.flatten.classic:harmonic",
     "arap": "skinfab.flatten.classic:arap",
@@ -37,7 +37,7 @@ def method(name: str) -> Flatten:
     Examples
     --------
     >>> method("isometric").__name__
-    'flatten_isometric'
+    'flatten_least'
     """
     if name not in METHODS:
         raise InputError(f"no flattening method {name!r}; there are {', '.join(METHODS)}")
