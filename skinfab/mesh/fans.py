@@ -6,19 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
+from skinfab.mesh.joined import joined
 from skinfab.mesh.topology import Topology
 
 IntArray = NDArray[np.int64]
-
-
-def _groups(a: IntArray, b: IntArray, count: int) -> tuple[int, IntArray]:
-    """Number of groups of 0..count-1 joined by the pairs a-b, and the group of each."""
-    graph = coo_array((np.ones(len(a), dtype=np.int8), (a, b)), shape=(count, count))
-    found, label = connected_components(graph, directed=False)
-    return int(found), label.astype(np.int64)
 
 
 def components(top: Topology) -> tuple[int, IntArray]:
@@ -26,7 +18,7 @@ def components(top: Topology) -> tuple[int, IntArray]:
     m, e = len(top.F), len(top.E)
     face = np.repeat(np.arange(m), 3)
     # Faces and edges are the nodes, so that three faces at one edge all join.
-    _, label = _groups(face, m + top.FE.ravel(), m + e)
+    _, label = joined(face, m + top.FE.ravel(), m + e)
     found, label = np.unique(label[:m], return_inverse=True)
     return len(found), label
 
@@ -58,7 +50,7 @@ def corner_fans(top: Topology, pairs: IntArray | None = None) -> tuple[int, IntA
     b0, b1 = 3 * g + j, 3 * g + (j + 1) % 3
     flat = F.ravel()
     same = flat[a0] == flat[b0]  # sides that run the same way (inconsistent winding)
-    count, fan = _groups(np.concatenate([a0, a1]), np.concatenate([np.where(same, b0, b1), np.where(same, b1, b0)]), 3 * m)
+    count, fan = joined(np.concatenate([a0, a1]), np.concatenate([np.where(same, b0, b1), np.where(same, b1, b0)]), 3 * m)
     return count, fan.reshape(m, 3)
 
 
@@ -90,7 +82,7 @@ def winding(top: Topology) -> Winding:
     same = top.F[f, i] == top.F[g, j]
     a = np.concatenate([f, f + m])
     b = np.concatenate([np.where(same, g + m, g), np.where(same, g, g + m)])
-    _, label = _groups(a, b, 2 * m)
+    _, label = joined(a, b, 2 * m)
     as_is, turned = label[:m], label[m:]
     # Of the two ways to wind a component take the one that keeps more faces as they are.
     kept = np.bincount(as_is, minlength=label.max(initial=-1) + 1)

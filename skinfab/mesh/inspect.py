@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from skinfab.mesh.fans import bowties, components, relative_heights, surplus_faces, unbalanced_edges, winding
 from skinfab.mesh.faults import Fault, FaultList, edge_of, face, vertex
+from skinfab.mesh.joined import joined
 from skinfab.mesh.model import Mesh
 from skinfab.mesh.topology import Topology
 from skinfab.tolerances import DEGENERATE_HEIGHT, SLIVER_HEIGHT
@@ -157,15 +158,12 @@ def _first_edge_of(top: Topology, faces: NDArray[np.bool_]) -> NDArray[np.bool_]
 
 def _loops(top: Topology, label: IntArray, count: int) -> IntArray:
     """Boundary loops of each component (c,); loops that touch at a bow-tie count as one."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
     edges = np.flatnonzero(top.is_boundary)
     if not len(edges):
         return np.zeros(count, dtype=np.int64)
     vertices, ends = np.unique(top.E[edges], return_inverse=True)
     a, b = ends.reshape(-1, 2).T
-    found, loop = connected_components(coo_array((np.ones(len(a)), (a, b)), shape=(len(vertices),) * 2), directed=False)
+    found, loop = joined(a, b, len(vertices))
     owner = np.empty(found, dtype=np.int64)
     owner[loop[a]] = label[top.EF[edges, 0]]
     return np.bincount(owner, minlength=count)

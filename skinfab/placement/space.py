@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from skinfab.flatten.locate import Locator
 from skinfab.material import Material
+from skinfab.mesh.joined import joined
 from skinfab.mesh.model import Mesh
 from skinfab.patterns.base import Pattern
 from skinfab.pieces import Piece
@@ -179,9 +180,6 @@ def crease_lines(mesh: Mesh, piece: Piece) -> Array:
 
     Sharp edges that are joined to less than `tolerances.CREASE_LENGTH_MM` of their like are noise and left out.
     """
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
     topology = piece.topology
     inner = np.flatnonzero(topology.edge_count == 2)
     normals = mesh.face_normals[piece.faces][topology.EF[inner]]
@@ -190,7 +188,7 @@ def crease_lines(mesh: Mesh, piece: Piece) -> Array:
     if not len(sharp):
         return np.zeros((0, 2, 2))
     n = len(piece.UV)
-    _, label = connected_components(coo_array((np.ones(len(sharp)), (sharp[:, 0], sharp[:, 1])), shape=(n, n)), directed=False)
+    _, label = joined(sharp[:, 0], sharp[:, 1], n)
     lines = piece.UV[sharp]
     length = np.hypot(*(lines[:, 1] - lines[:, 0]).T)
     together = np.bincount(label[sharp[:, 0]], weights=length, minlength=n)

@@ -12,9 +12,8 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
+from skinfab.mesh.joined import joined
 from skinfab.mesh.model import Mesh
 from skinfab.mesh.topology import Topology
 
@@ -76,17 +75,16 @@ def open_pieces(mesh: Mesh, cut: BoolArray, *, faces: IntArray | None = None) ->
     local[chosen] = np.arange(len(chosen))
     edges = np.unique(topology.FE[chosen]) if faces is not None else np.arange(len(topology.E))
     EF, EC = local[topology.EF[edges]], topology.EC[edges]
-    joined = (EF >= 0).all(axis=1) & ~cut[edges]
-    (f, g), (i, j) = EF[joined].T, EC[joined].T
+    kept = (EF >= 0).all(axis=1) & ~cut[edges]
+    (f, g), (i, j) = EF[kept].T, EC[kept].T
     F = mesh.F[chosen]
 
-    count, label = connected_components(coo_array((np.ones(len(f), dtype=np.int8), (f, g)), shape=(len(F), len(F))), directed=False)
+    count, label = joined(f, g, len(F))
     a0, a1 = 3 * f + i, 3 * f + (i + 1) % 3
     b0, b1 = 3 * g + j, 3 * g + (j + 1) % 3
     same_way = F[f, i] == F[g, j]  # the two faces run along the edge in one direction: inconsistent winding
     b0, b1 = np.where(same_way, b0, b1), np.where(same_way, b1, b0)
-    links = coo_array((np.ones(2 * len(f), dtype=np.int8), (np.r_[a0, a1], np.r_[b0, b1])), shape=(3 * len(F), 3 * len(F)))
-    _, corner = connected_components(links, directed=False)
+    _, corner = joined(np.r_[a0, a1], np.r_[b0, b1], 3 * len(F))
     corner = corner.reshape(-1, 3)
 
     order = np.argsort(label, kind="stable")

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from skinfab.flatten.laplacian import intrinsic
+from skinfab.mesh.joined import joined
 from skinfab.mesh.model import Mesh
 from skinfab.seams.cut import open_pieces
 from skinfab.seams.judge import Limits, judge
@@ -139,5 +138,5 @@ def _runs(E: IntArray, pair: IntArray, blunt: BoolArray) -> IntArray:
     rows = np.concatenate([edge[~open_end[:, s]] for s in (0, 1)])
     columns = np.concatenate([len(E) + node[~open_end[:, s], s] for s in (0, 1)])
     size = len(E) + len(nodes)
-    _, label = connected_components(coo_array((np.ones(len(rows), dtype=np.int8), (rows, columns)), shape=(size, size)), directed=False)
+    _, label = joined(rows, columns, size)
     return np.unique(label[: len(E)], return_inverse=True)[1]

@@ -8,7 +8,7 @@ import shapes
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from skinfab.mesh.topology import Topology
+from skinfab.mesh.topology import Topology, _order_of_pairs
 
 few = settings(max_examples=25, deadline=None)
 
@@ -121,7 +121,7 @@ def test_no_faces() -> None:
 
 
 def test_many_faces_are_ordered_as_few_are() -> None:
-    """Above some size the edges are sorted by counting; the tables must not show it."""
+    """Numbers of many sizes are sorted; the tables must not show how."""
     _, F = shapes.random_disk(5, 900)
     rng = np.random.default_rng(5)
     F = rng.permutation(F[rng.random(len(F)) < 0.9])
@@ -134,7 +134,7 @@ def test_many_faces_are_ordered_as_few_are() -> None:
     np.testing.assert_array_equal(topology.FE, inverse.reshape(3, -1).T)
     np.testing.assert_array_equal(topology.EF[:, 0], first % len(F))
     np.testing.assert_array_equal(topology.EC[:, 0], first // len(F))
-    # A vertex number that is none, as in a mesh not yet looked over, must not reach the counting sort.
+    # A vertex number that is none, as in a mesh not yet looked over, is no shift.
     assert len(Topology(np.where(F == 7, -1, F)).E) == len(E)
 
 
@@ -163,3 +163,11 @@ def test_oriented_manifold() -> None:
 )
 def test_not_an_oriented_manifold(F) -> None:
     assert not Topology(np.array(F)).is_oriented_manifold
+
+
+@pytest.mark.parametrize("step", [1, 2**20, 2**40])
+def test_pairs_too_large_for_one_number_are_sorted_in_parts(step: int) -> None:
+    """Three numbers share 63 bits: here they need up to 130."""
+    rng = np.random.default_rng(1)
+    low, high = rng.integers(0, 50, (2, 3000), dtype=np.int64) * step
+    np.testing.assert_array_equal(_order_of_pairs(low, high), np.lexsort((high, low)))
