@@ -118,6 +118,9 @@ TARGET_SETTLED = 1e-6
 #: only as near to conformal as the mesh is fine.
 CURVE_DECREASE = 1e-3
 
+#: A log scale factor (or a vertex's curvature, rad) under this is rounding: there is nothing left for a cone to take in.
+FLAT_SCALE = 1e-9
+
 #: An edge is flipped when its two cotangents sum to less than minus this fraction of their sizes: rounding flips none.
 DELAUNAY_COTANGENT = 1e-9
 

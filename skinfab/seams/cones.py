@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from skinfab.errors import InputError
+from skinfab.errors import InputError, RefusedError
 from skinfab.flatten.cones import cone_scale, place_cones
-from skinfab.flatten.distortion import best_scale
-from skinfab.flatten.robust import flatten_robust
+from skinfab.flatten.distortion import best_scale, shaped_areas
+from skinfab.flatten.robust import flatten_robust, turned_over
 from skinfab.mesh.model import Mesh
 from skinfab.seams.cut import OpenPiece, open_pieces
 from skinfab.seams.disk import cut_to_disk
@@ -62,9 +62,9 @@ def flatten_with_cones(
     mesh : Mesh
         One component, manifold; closed or open.
     cones : (c,) int64, optional
-        Vertices. Default: placed automatically.
+        Vertices, each once. Default: placed automatically.
     count : int, optional
-        How many to place; default as many as needed.
+        How many to place; default as many as pay (`place_cones`).
 
     Returns
     -------
@@ -77,15 +77,17 @@ def flatten_with_cones(
     Raises
     ------
     InputError
-        Several components, or a cone that is no vertex.
+        Several components, or a cone that is no vertex or given twice.
+    RefusedError
+        Triangles come out upside down or without area, over the intrinsic Delaunay triangulation too.
     """
     topology = mesh.topology
     if topology.face_components()[0] != 1:
         raise InputError("cones need one connected surface; use --method auto for several components")
     if cones is None:
         cones = place_cones(mesh.V, mesh.F, count=count, topology=topology)
-    if missing := [int(c) for c in cones if not 0 <= c < len(mesh.V)]:
-        raise InputError(f"cone vertex {missing[0]} does not exist; the mesh has vertices 0 to {len(mesh.V) - 1}")
+    else:
+        _require_vertices(cones, len(mesh.V))
     cut = cut_through(mesh, cones)
     (piece,) = open_pieces(mesh, cut)
     if not piece.is_disk:
@@ -93,4 +95,18 @@ def flatten_with_cones(
     u, _ = cone_scale(mesh.V, mesh.F, cones, topology=topology)
     V = mesh.V[piece.vertices]
     uv = flatten_robust(V, piece.F, scale=u[piece.vertices], topology=piece.topology)
+    _, shaped = shaped_areas(V, piece.F)
+    if over := turned_over(uv, piece.F[shaped]):
+        raise RefusedError(
+            f"{over} of {len(mesh.F)} triangles come out upside down or without area with {len(cones)} cones; "
+            f"use other cones, a remeshed surface or --method auto"
+        )
     return cut, piece, uv * best_scale(V, piece.F, uv), cones
+
+
+def _require_vertices(cones: IntArray, n_vertices: int) -> None:
+    if missing := [int(c) for c in cones if not 0 <= c < n_vertices]:
+        raise InputError(f"cone vertex {missing[0]} does not exist; the mesh has vertices 0 to {n_vertices - 1}")
+    vertex, times = np.unique(cones, return_counts=True)
+    if (times > 1).any():
+        raise InputError(f"cone vertex {vertex[times > 1][0]} is given {times[times > 1][0]} times; give every cone once")

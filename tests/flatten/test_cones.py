@@ -6,11 +6,12 @@ import shapes
 
 from skinfab.errors import InputError
 from skinfab.flatten.bff import flatten_disk
-from skinfab.flatten.cones import cone_scale, place_cones
+from skinfab.flatten.cones import ConeField, cone_scale, place_cones
+from skinfab.flatten.distortion import measure
 from skinfab.flatten.laplacian import intrinsic
 from skinfab.mesh.model import Mesh
 from skinfab.mesh.topology import Topology
-from skinfab.seams.cones import cut_through
+from skinfab.seams.cones import cut_through, flatten_with_cones
 from skinfab.seams.cut import open_pieces
 
 
@@ -78,13 +79,83 @@ def test_more_cones_leave_less_scale() -> None:
     V, F = shapes.sphere(3)
     worst = [np.abs(cone_scale(V, F, place_cones(V, F, count=k))[0]).max() for k in (2, 8, 32)]
     assert worst[2] < worst[1] < worst[0]
-    automatic = place_cones(V, F)
-    assert np.abs(cone_scale(V, F, automatic)[0]).max() < 0.05 or len(automatic) == 64
+
+
+@pytest.mark.parametrize(
+    "surface", [shapes.sphere(3), shapes.torus(), shapes.cap(8, 2.8), shapes.cube(4)], ids=["sphere", "torus", "cap", "cube"]
+)
+def test_cones_added_one_by_one_give_the_factors_of_all_at_once(surface) -> None:
+    V, F = surface
+    field = ConeField(V, F, Topology(F))
+    given = len(field.cones)
+    for added in range(1, 8 - given + 1):
+        field.add(field.worst)
+        assert (field.factorisations, field.solves) == (1, 1 + added)
+    assert len(set(field.cones)) == 8
+    np.testing.assert_allclose(field.u, cone_scale(V, F, np.array(field.cones))[0], atol=1e-11)
+
+
+def test_the_mean_d_told_beforehand_is_the_layouts() -> None:
+    for mesh in (Mesh(*shapes.torus()), Mesh(*shapes.cap(24, 2.0))):
+        field = ConeField(mesh.V, mesh.F, mesh.topology)
+        while len(field.cones) < 6:
+            field.add(field.worst)
+        _, piece, uv, _ = flatten_with_cones(mesh, cones=np.array(field.cones))
+        assert field.mean_d - 4 == pytest.approx(measure(mesh.V[piece.vertices], piece.F, uv).mean - 4, rel=0.05)
+
+
+def test_factors_beyond_all_numbers_are_only_bad() -> None:
+    """A pipe of 1 by 600 with one open end, its curvature at the other: e^u runs past what a number holds."""
+    around, along = 12, 1200
+    a = 2 * np.pi * np.arange(around) / around
+    V = np.array([[np.cos(t), np.sin(t), z / 2] for z in range(along + 1) for t in a] + [[0.0, 0, -0.5]])
+    F = [[z * around + i, z * around + (i + 1) % around, z * around + i + around] for z in range(along) for i in range(around)]
+    F += [
+        [z * around + (i + 1) % around, z * around + (i + 1) % around + around, z * around + i + around]
+        for z in range(along)
+        for i in range(around)
+    ]
+    F += [[len(V) - 1, (i + 1) % around, i] for i in range(around)]
+    faces = np.array(F)
+    field = ConeField(V, faces, Topology(faces))
+    assert np.abs(field.u).max() > 500 and np.isfinite(field.mean_d) and field.mean_d > 1e100
+    cones = place_cones(V, faces)
+    assert 0 < len(cones) <= 12 and np.abs(cone_scale(V, faces, cones)[0]).max() < 2
+
+
+@pytest.mark.parametrize("level", [1, 2, 3, 4])
+def test_a_sphere_gets_few_cones_however_fine(level: int) -> None:
+    """Twelve and a few, as a football has corners; 64 without a price."""
+    V, F = shapes.sphere(level)
+    cones = place_cones(V, F)
+    assert 12 <= len(cones) <= 22 and len(set(cones.tolist())) == len(cones)
+    field = ConeField(V, F, Topology(F))
+    for cone in cones[1:]:
+        field.add(int(cone))
+    assert field.mean_d < 4.05
+    assert len(place_cones(V, F, count=36)) == 36  # more are to be had
+
+
+def test_the_number_taken_is_the_cheapest_of_all() -> None:
+    for V, F in (shapes.sphere(2), shapes.torus(), shapes.cap(8, 2.8)):
+        field = ConeField(V, F, Topology(F))
+        first = len(field.cones)
+        cost = [field.mean_d + 0.004 * len(field.cones)]
+        while len(field.cones) < 64:
+            field.add(field.worst)
+            cost.append(field.mean_d + 0.004 * len(field.cones))
+        assert len(place_cones(V, F)) == first + int(np.argmin(cost))
 
 
 def test_flat_surfaces_get_no_cone() -> None:
     V, F = shapes.cylinder_sheet()
     assert len(place_cones(V, F)) == 0 and len(place_cones(V, F, count=5)) == 0
+
+
+@pytest.mark.parametrize("count", [0, -3])
+def test_no_cones_cannot_be_placed(count: int) -> None:
+    with pytest.raises(InputError, match=f"{count} cones cannot be placed; give at least 1"):
+        place_cones(*shapes.sphere(), count=count)
 
 
 def test_closed_without_cones_is_refused() -> None:

@@ -25,7 +25,7 @@ def test_polyhedra_at_d_4(name: str, count: int, edges: int, automatic: bool) ->
 def test_smooth_closed_surfaces_get_better_with_cones() -> None:
     mesh = Mesh(*shapes.sphere(2))
     d = []
-    for count in (2, 8, 32):
+    for count in (6, 12, 32):
         _, piece, UV, _ = flatten_with_cones(mesh, count=count)
         assert best_scale(mesh.V[piece.vertices], piece.F, UV) == pytest.approx(1)
         d.append(measure(mesh.V[piece.vertices], piece.F, UV).mean)
@@ -62,6 +62,7 @@ def test_the_nearest_point_is_joined_first() -> None:
     [
         (Mesh(*shapes.sphere()), {"cones": np.array([3, 999])}, "cone vertex 999 does not exist; the mesh has vertices 0 to 161"),
         (Mesh(*shapes.sphere()), {"cones": np.array([-1, 3])}, "cone vertex -1 does not exist"),
+        (Mesh(*shapes.sphere()), {"cones": np.array([3, 7, 11, 7])}, "cone vertex 7 is given 2 times; give every cone once"),
         (Mesh(*shapes.sphere()), {"count": 1}, "a closed surface needs at least two cones"),
         (Mesh(np.vstack([shapes.wavy()[0]] * 2), np.vstack([shapes.wavy()[1], shapes.wavy()[1] + 169])), {}, "one connected surface"),
     ],

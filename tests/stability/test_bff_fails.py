@@ -1,14 +1,22 @@
 """Where BFF's target shapes and cones fail: the plain method is shown to, then what is done instead."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 import shapes
 
+from skinfab.cli.main import main
 from skinfab.errors import RefusedError
-from skinfab.flatten.bff import BffSolver
+from skinfab.flatten.bff import BffSolver, flatten_disk
 from skinfab.flatten.bff_curve import scaled_lengths, turning_of
 from skinfab.flatten.bff_descent import conformal_energy
-from skinfab.flatten.distortion import singular_values
+from skinfab.flatten.cones import cone_scale, place_cones
+from skinfab.flatten.distortion import measure, singular_values
+from skinfab.mesh.io import load_mesh
+from skinfab.mesh.model import Mesh
+from skinfab.seams.cones import cut_through, flatten_with_cones
+from skinfab.seams.cut import open_pieces
 
 
 def along(curve: np.ndarray, length: np.ndarray) -> np.ndarray:
@@ -100,3 +108,43 @@ def test_negative_cotangents_turn_triangles_of_the_disk_over() -> None:
     solver = BffSolver(V, F)
     with pytest.raises(RefusedError, match="upside down inside the disk"):
         solver.disk()
+
+
+def crumpled(noise: float = 0.3) -> Mesh:
+    """A closed ball whose vertices are off by up to a few edge lengths: obtuse triangles and spikes all over."""
+    V, F = shapes.sphere(3)
+    return Mesh(V * (1 + noise * np.random.default_rng(0).standard_normal((len(V), 1))), F)
+
+
+def test_cones_on_a_crumpled_ball_are_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """What the reference tool writes as a success: 8 cones, and triangles upside down."""
+    mesh = crumpled()
+    cones = place_cones(mesh.V, mesh.F, count=8)
+    (piece,) = open_pieces(mesh, cut_through(mesh, cones))
+    u, _ = cone_scale(mesh.V, mesh.F, cones)
+    plain = flatten_disk(mesh.V[piece.vertices], piece.F, scale=u[piece.vertices])
+    assert np.isfinite(plain).all() and measure(mesh.V[piece.vertices], piece.F, plain).flipped > 10
+    with pytest.raises(RefusedError, match=r"\d+ of 1280 triangles come out upside down or without area with 8 cones"):
+        flatten_with_cones(mesh, count=8)
+    lines = ["v {:.17g} {:.17g} {:.17g}".format(*v) for v in (30 * mesh.V).tolist()] + [
+        "f {} {} {}".format(*f) for f in (mesh.F + 1).tolist()
+    ]
+    (tmp_path / "ball.obj").write_text("\n".join(lines) + "\n")
+    words = ["flatten", str(tmp_path / "ball.obj"), "-o", str(tmp_path / "o.obj"), "--method", "bff-cones", "--cones", "8"]
+    assert main(words) == 3
+    assert "triangles come out upside down or without area with 8 cones; use other cones" in capsys.readouterr().err
+    assert not (tmp_path / "o.obj").exists()
+
+
+SHARED = Path(__file__).resolve().parents[2].parent / "shared" / "meshes"
+
+
+@pytest.mark.parametrize("name", ["softhand_fingertip.stl", "webxr_hand_left.stl"])
+def test_eight_cones_that_flip_real_objects_are_refused_and_more_do_not_flip(name: str) -> None:
+    if not (SHARED / name).exists():
+        pytest.skip(f"needs ../shared/meshes/{name}")
+    mesh = load_mesh(SHARED / name, units="mm").mesh
+    with pytest.raises(RefusedError, match="come out upside down or without area with 8 cones"):
+        flatten_with_cones(mesh, count=8)
+    _, piece, uv, _ = flatten_with_cones(mesh)
+    assert measure(mesh.V[piece.vertices], piece.F, uv).flipped == 0
