@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from skinfab.flatten.simplified import Simplified
     from skinfab.mesh.model import Mesh
     from skinfab.pieces import Piece
+    from skinfab.seams.cut import OpenPiece
 
 #: The names of `flatten.methods.METHODS`, and the two that also cut; repeated here because --help imports nothing heavy.
 NAMES = ("auto", "bff", "bff-cones", "isometric", "lscm", "arap", "slim", "harmonic")
@@ -45,7 +46,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "flatten",
         help="flatten a mesh and say how good it is",
         description="Flatten a mesh; OUT.obj is the mesh (v, mm) with the flat pieces as texture coordinates (vt, mm). auto minimises the "
-        "distortion d, and first cuts what is not a disk; bff-cones cuts through cone points; bff stands holes; the others need a disk.",
+        "distortion d, and first cuts what is no disk, with holes or without; bff-cones cuts through cone points; the others need a disk.",
     )
     steps.add_mesh_options(p)
     p.add_argument("-o", "--output", metavar="OUT.obj", type=steps.named(".obj"), required=True, help="the file to write")
@@ -116,16 +117,24 @@ def _flatten(args: argparse.Namespace, mesh: Mesh, simplified: list[Simplified])
     opened = open_pieces(mesh, mesh.topology.is_boundary)
     flatten = _method(args, simplified)
     if args.method == "auto":
-        if all(piece.is_disk for piece in opened):
+        if all(_has_border_and_no_handle(piece) for piece in opened):
             flat = [(p.faces, p.vertices, p.F, flatten(mesh.V[p.vertices], p.F)) for p in opened]
             pieces, distortions = _as_pieces(mesh, flat)
-            if not any(d.overlap_mm2 > 0 or d.flipped for d in distortions):
+            # A tube, open at both ends, is a disk with a hole too: where it would stretch too far it is cut.
+            lie = [p.is_disk or d.mean <= args.max_distortion for p, d in zip(opened, distortions, strict=True)]
+            if all(lie) and not any(d.overlap_mm2 > 0 or d.flipped for d in distortions):
                 return pieces, distortions
         if args.simplify != "off":
             simplified.clear()
             steps.say(["--simplify has no part in an automatic cut, whose pieces are flattened on all their triangles"])
         return _cut(mesh, args.max_distortion)
     return _as_pieces(mesh, [(p.faces, p.vertices, p.F, flatten(mesh.V[p.vertices], p.F)) for p in opened])
+
+
+def _has_border_and_no_handle(piece: OpenPiece) -> bool:
+    """A disk, with holes or without."""
+    loops = len(piece.topology.boundary_loops)
+    return loops > 0 and piece.topology.euler == 2 - loops
 
 
 def _method(args: argparse.Namespace, simplified: list[Simplified]) -> Flatten:

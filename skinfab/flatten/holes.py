@@ -174,7 +174,7 @@ def flatten_filled(V: FloatArray, F: IntArray) -> FloatArray:
     return uv * best_scale(V, F, uv)
 
 
-def flatten_least(V: FloatArray, F: IntArray, *, hopeless_above: float = np.inf) -> FloatArray:
+def flatten_least(V: FloatArray, F: IntArray, *, topology: Topology | None = None) -> FloatArray:
     """The least mean d of a surface with or without holes: `flatten_isometric`, then the holes left to themselves.
 
     Where a hole's rim would come to lie on itself or on another, the layout with filled holes is kept.
@@ -184,8 +184,8 @@ def flatten_least(V: FloatArray, F: IntArray, *, hopeless_above: float = np.inf)
     V : (n, 3) float64, mm
     F : (m, 3) int64
         One component of genus 0 with a boundary; every vertex in use.
-    hopeless_above : float
-        See `IsometricSolver.refine`.
+    topology : Topology, optional
+        Of `F`, where it is at hand.
 
     Returns
     -------
@@ -201,13 +201,13 @@ def flatten_least(V: FloatArray, F: IntArray, *, hopeless_above: float = np.inf)
     from skinfab.flatten.isometric import IsometricSolver
     from skinfab.flatten.overlap import overlap_area
 
-    topology = Topology(F)
+    topology = topology or Topology(F)
     W, G = fill_holes(V, F, topology=topology)
     if G is F:
-        return flatten_isometric(V, F, topology=topology, hopeless_above=hopeless_above)
+        return flatten_isometric(V, F, topology=topology)
     filled = flatten_isometric(W, G)[: len(V)]
     filled = filled * best_scale(V, F, filled)
-    freed = IsometricSolver(V, F).refine(filled, hopeless_above=hopeless_above).UV
+    freed = IsometricSolver(V, F).refine(filled).UV
     allowed = OVERLAP_FRACTION * float(np.prod(np.ptp(freed, axis=0)))
     if overlap_area(F, freed, topology=topology) <= overlap_area(F, filled, topology=topology) + allowed:
         return freed

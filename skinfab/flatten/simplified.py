@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from skinfab.errors import InputError
 from skinfab.flatten.carry import carrier
 from skinfab.flatten.disk import flatten_isometric
+from skinfab.flatten.holes import flatten_least
 from skinfab.flatten.isometric import IsometricSolver
 from skinfab.flatten.rigid_start import rigid_steps
 from skinfab.flatten.two_level import CoarseCorrection, relax
@@ -97,7 +98,7 @@ def flatten_simplified(V: FloatArray, F: IntArray, *, topology: Topology | None 
     topology = topology or Topology(F)
 
     def plain(why: str) -> Simplified:
-        return Simplified(flatten_isometric(V, F, topology=topology), len(F), 0, 0.0, why)
+        return Simplified(flatten_least(V, F, topology=topology), len(F), 0, 0.0, why)
 
     if len(F) < LEAST_COARSE * share:
         return plain("so few need no simplifying")

@@ -46,16 +46,44 @@ def test_cones(cones: str, mean: float, tmp_path: Path) -> None:
     assert results.distortion(*results.read_flat_obj(tmp_path / "o.obj"))[0] == pytest.approx(mean, abs=1e-6)
 
 
-def test_bff_fills_holes_and_takes_components_one_by_one(tmp_path: Path) -> None:
-    """Two flat plates, one with two holes: both stay as they are."""
+@pytest.mark.parametrize("method", ["auto", *METHODS])
+def test_holes_and_components_one_by_one(method: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Two flat plates, one with two holes: both stay as they are, and nothing is cut."""
     V, F = shapes.holed()
     W, G = shapes.grid(4, 4)
     mesh = written(tmp_path, np.vstack([5 * V, 20 * W + [0, 0, 30]]), np.vstack([F, G + len(V)]))
-    assert main(["flatten", mesh, "-o", str(tmp_path / "o.obj"), "--method", "bff", "--json", str(tmp_path / "f.json")]) == 0
+    assert main(["flatten", mesh, "-o", str(tmp_path / "o.obj"), "--method", method, "--json", str(tmp_path / "f.json")]) == 0
+    assert "cut" not in capsys.readouterr().err
     figures = json.loads((tmp_path / "f.json").read_text())
     assert [p["n_faces"] for p in figures["pieces"]] == [len(F), len(G)]
-    assert figures["distortion"]["mean"] == pytest.approx(4, abs=1e-9)
-    assert figures["distortion"]["mean_at_kept_area"] == pytest.approx(4, abs=1e-9)
+    exact = 2.0 if method == "harmonic" else 1e-6
+    assert figures["distortion"]["mean"] == pytest.approx(4, abs=exact)
+    assert figures["distortion"]["mean_at_kept_area"] == pytest.approx(4, abs=exact)
+
+
+def tube(columns: int = 24, rows: int = 10) -> tuple[np.ndarray, np.ndarray]:
+    """A cylinder open at both ends: a disk with a hole, which only a cut lays flat."""
+    V, F = shapes.cylinder_sheet(columns, rows, radius=20, height=60)
+    v = np.arange(len(V)).reshape(rows + 1, columns + 1)
+    v[:, -1] = v[:, 0]
+    used, local = np.unique(v.ravel()[F], return_inverse=True)
+    return V[used], local.reshape(-1, 3)
+
+
+def test_auto_cuts_a_hole_open_only_where_it_would_stretch_too_far(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    mesh = written(tmp_path, *tube())
+    assert main(["flatten", mesh, "-o", str(tmp_path / "i.obj"), "--method", "isometric"]) == 0
+    assert results.distortion(*results.read_flat_obj(tmp_path / "i.obj"))[0] > 4.5
+    assert main(["flatten", mesh, "-o", str(tmp_path / "o.obj")]) == 0
+    assert "cut automatically" in capsys.readouterr().err
+    assert results.distortion(*results.read_flat_obj(tmp_path / "o.obj"))[0] == pytest.approx(4, abs=1e-3)
+
+
+def test_simplifying_leaves_holes_alone(tmp_path: Path) -> None:
+    V, F = shapes.holed()
+    mesh = written(tmp_path, 5 * V, F)
+    assert main(["flatten", mesh, "-o", str(tmp_path / "o.obj"), "--simplify", "auto"]) == 0
+    assert results.distortion(*results.read_flat_obj(tmp_path / "o.obj"))[0] == pytest.approx(4, abs=1e-6)
 
 
 def test_auto_cuts_what_is_closed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
