@@ -5,16 +5,50 @@ The factorisation is SuiteSparse's supernodal CHOLMOD as shipped in cvxopt's whe
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
 import numpy as np
 from cvxopt import cholmod, matrix, spmatrix
 from numpy.typing import NDArray
-from scipy.sparse import csc_array, tril
 
 from skinfab.errors import SkinfabError
+
+if TYPE_CHECKING:
+    from scipy.sparse import csc_array
 
 
 class NotPositiveDefiniteError(SkinfabError):
     """A matrix that should be positive definite is not."""
+
+
+@dataclass(frozen=True, eq=False)
+class LowerTriangle:
+    """Entries of a symmetric matrix on and below its diagonal, column by column, each column by row.
+
+    Parameters
+    ----------
+    data : (k,) float64
+    rows, columns : (k,) int64
+    n : int
+        Rows and columns of the matrix.
+    """
+
+    data: NDArray[np.float64]
+    rows: NDArray[np.int64]
+    columns: NDArray[np.int64]
+    n: int
+
+    @classmethod
+    def of(cls, matrix: csc_array) -> LowerTriangle:
+        """Of a scipy matrix (n, n); anything above its diagonal is left out."""
+        from scipy.sparse import csc_array, tril
+
+        lower = csc_array(tril(matrix, format="csc"))
+        lower.sort_indices()
+        n = lower.shape[0]
+        columns = np.repeat(np.arange(n), np.diff(lower.indptr))
+        return cls(lower.data, lower.indices.astype(np.int64), columns, n)
 
 
 class Cholesky:
@@ -22,8 +56,7 @@ class Cholesky:
 
     Parameters
     ----------
-    lower : (n, n) sparse
-        Its lower triangle; anything above the diagonal is left out.
+    lower : LowerTriangle or (n, n) csc_array
 
     Attributes
     ----------
@@ -37,18 +70,16 @@ class Cholesky:
 
     Examples
     --------
-    >>> c = Cholesky(csc_array(np.array([[4.0, 0.0], [2.0, 3.0]])))
+    >>> c = Cholesky(LowerTriangle(np.array([4.0, 2.0, 3.0]), np.array([0, 1, 1]), np.array([0, 0, 1]), 2))
     >>> c.solve(np.array([8.0, 7.0])).round(12).tolist(), c.factorisations, c.solves
     ([1.25, 1.5], 1, 1)
     """
 
-    def __init__(self, lower: csc_array) -> None:
-        lower = csc_array(tril(lower, format="csc"))
-        lower.sort_indices()
-        n = lower.shape[0]
-        columns = np.repeat(np.arange(n), np.diff(lower.indptr))
+    def __init__(self, lower: LowerTriangle | csc_array) -> None:
+        if not isinstance(lower, LowerTriangle):
+            lower = LowerTriangle.of(lower)
         self.factorisations = self.solves = 0
-        self._matrix = spmatrix(matrix(lower.data), matrix(lower.indices.astype(np.int64)), matrix(columns.astype(np.int64)), (n, n))
+        self._matrix = spmatrix(matrix(lower.data), matrix(lower.rows), matrix(lower.columns), (lower.n, lower.n))
         cholmod.options["supernodal"] = 2
         self._factor = cholmod.symbolic(self._matrix)
         self._numeric()

@@ -11,7 +11,6 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csc_array
 
 from skinfab.errors import InputError
 from skinfab.flatten.bff_curve import close_curve, scaled_lengths, vertex_scale
@@ -76,10 +75,10 @@ class BffSolver:
         self.lengths_mm = np.linalg.norm(V[np.roll(loop, -1)] - V[loop], axis=1)
         inner = np.ones(len(V), dtype=bool)
         inner[loop] = False
-        self._free = free = np.flatnonzero(inner)
-        self._L = L = corners.stiffness()
-        self._L_bf, self._L_bb = csc_array(L[loop][:, free]), csc_array(L[loop][:, loop])
-        self._cholesky = Cholesky(csc_array(L[free][:, free])) if len(free) else None
+        self._free = np.flatnonzero(inner)
+        self._L = corners.laplacian() if robust else corners.laplacian(topology=topology)
+        self._L_about_boundary = self._L.about(loop)
+        self._cholesky = Cholesky(self._L.block(inner)) if len(self._free) else None
         self._curvature = np.where(inner, 2 * np.pi, np.pi) - corners.angle_sum
 
     @property
@@ -206,18 +205,20 @@ class BffSolver:
 
     def _slope(self, values: FloatArray, source: FloatArray | float = 0.0) -> FloatArray:
         """Normal derivative, integrated at each boundary vertex, of the function with L f = -source inside and these boundary values."""
-        slope: FloatArray = self._L_bb @ values
-        if self._cholesky is not None:
-            slope = slope + self._L_bf @ self._cholesky.solve(-source - self._L_bf.T @ values)
-        return slope
+        f = self._harmonic(values, source)
+        return (self._L_about_boundary @ f)[self.boundary]
 
     def _extended(self, curve: FloatArray) -> FloatArray:
         """Boundary curve and the harmonic functions inside (4.4)."""
-        uv = np.empty((len(self._curvature), 2))
-        uv[self.boundary] = curve
+        return self._harmonic(curve)
+
+    def _harmonic(self, values: FloatArray, source: FloatArray | float = 0.0) -> FloatArray:
+        """The function (n,) or (n, k) with L f = -source inside and these values on the boundary. One solve."""
+        f = np.zeros((len(self._curvature), *values.shape[1:]))
+        f[self.boundary] = values
         if self._cholesky is not None:
-            uv[self._free] = self._cholesky.solve(-(self._L_bf.T @ curve))
-        return uv
+            f[self._free] = self._cholesky.solve(-source - (self._L_about_boundary @ f)[self._free])
+        return f
 
     def _checked(self, values: FloatArray, what: str) -> FloatArray:
         values = np.asarray(values, dtype=np.float64)

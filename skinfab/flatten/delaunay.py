@@ -12,13 +12,13 @@ returns from an edge without length.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numba
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array, csc_array
 
+from skinfab.flatten.graph_laplacian import GraphLaplacian
 from skinfab.flatten.laplacian import Intrinsic, corners_of_lengths, mollified_lengths
 from skinfab.mesh.topology import Topology
 from skinfab.tolerances import DELAUNAY_COTANGENT, LEAST_EDGE_WEIGHT
@@ -44,18 +44,12 @@ class DelaunayCorners(Intrinsic):
     length: FloatArray
     on_border: NDArray[np.bool_]
 
-    def stiffness(self) -> csc_array:
+    def laplacian(self, *, topology: Topology | None = None) -> GraphLaplacian:
         """The cotangent matrix, (n, n), without negative weights but along and across the border."""
-        L = coo_array(super().stiffness())
-        i, j, entry = L.row, L.col, L.data
-        off = i != j
+        L = super().laplacian(topology=topology)
         # Between two border vertices a weight moves no inner vertex, and the border's own is part of its curvature.
-        entry = np.where(off & (entry > DELAUNAY_COTANGENT) & ~(self.on_border[i] & self.on_border[j]), -LEAST_EDGE_WEIGHT, entry)
-        everyone = np.arange(self.n_vertices)
-        diagonal = -np.bincount(i[off], entry[off], self.n_vertices)
-        return csc_array(
-            coo_array((np.r_[entry[off], diagonal], (np.r_[i[off], everyone], np.r_[j[off], everyone])), shape=(len(everyone),) * 2)
-        )
+        negative = (L.weight < -DELAUNAY_COTANGENT) & ~self.on_border[L.E].all(axis=1)
+        return replace(L, weight=np.where(negative, LEAST_EDGE_WEIGHT, L.weight))
 
 
 def delaunay_corners(V: FloatArray, F: IntArray, *, topology: Topology | None = None) -> DelaunayCorners:

@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array, csc_array
 
 from skinfab.flatten.distortion import shaped_areas
+from skinfab.flatten.graph_laplacian import GraphLaplacian
+from skinfab.mesh.topology import Topology
 from skinfab.tolerances import MOLLIFY
+
+if TYPE_CHECKING:
+    from scipy.sparse import csc_array
 
 FloatArray = NDArray[np.float64]
 
@@ -28,13 +33,16 @@ class Intrinsic:
         """(n,) rad: sum of the corner angles at each vertex."""
         return np.bincount(self.F.ravel(), self.angle.ravel(), self.n_vertices).astype(np.float64)
 
-    def stiffness(self) -> csc_array:
+    def laplacian(self, *, topology: Topology | None = None) -> GraphLaplacian:
         """The positive semidefinite cotangent matrix, (n, n): the quadratic form of the Dirichlet energy."""
-        i, j = self.F[:, [1, 2, 0]].ravel(), self.F[:, [2, 0, 1]].ravel()
-        w = self.cotangent.ravel() / 2
-        rows, columns = np.concatenate([i, j, i, j]), np.concatenate([j, i, i, j])
-        n = self.n_vertices
-        return csc_array(coo_array((np.concatenate([-w, -w, w, w]), (rows, columns)), shape=(n, n)))
+        topology = topology or Topology(self.F)
+        # Edge k of a face begins at its corner k, opposite corner k + 2.
+        weight = np.bincount(topology.FE.ravel(), self.cotangent[:, [2, 0, 1]].ravel() / 2, len(topology.E))
+        return GraphLaplacian(topology.E, weight.astype(np.float64, copy=False), self.n_vertices)
+
+    def stiffness(self) -> csc_array:
+        """The same for scipy."""
+        return self.laplacian().to_sparse()
 
 
 def intrinsic(V: FloatArray, F: NDArray[np.int64]) -> Intrinsic:

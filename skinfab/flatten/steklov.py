@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csc_array
 
+from skinfab.flatten.graph_laplacian import GraphLaplacian
 from skinfab.linalg import Cholesky
 
 FloatArray = NDArray[np.float64]
@@ -20,24 +20,25 @@ class NeumannToDirichlet:
 
     Parameters
     ----------
-    L : (n, n) sparse
+    L : GraphLaplacian, (n, n)
         Cotangent Laplacian of a connected mesh.
     boundary : (b,) int64
         Its boundary vertices, in the order in which slopes and values are given.
 
     Examples
     --------
-    >>> L = csc_array(np.array([[1.0, -1, 0], [-1, 2, -1], [0, -1, 1]]))  # a line of three vertices
+    >>> L = GraphLaplacian(np.array([[0, 1], [1, 2]]), np.ones(2), 3)  # a line of three vertices
     >>> NeumannToDirichlet(L, np.array([0, 2]))(np.array([1.0, -1.0])).round(9).tolist()
     [1.0, -1.0]
     """
 
-    def __init__(self, L: csc_array, boundary: NDArray[np.int64]) -> None:
+    def __init__(self, L: GraphLaplacian, boundary: NDArray[np.int64]) -> None:
         pinned = boundary[0]
-        kept = np.delete(np.arange(L.shape[0]), pinned)
+        kept = np.ones(L.n, dtype=bool)
+        kept[pinned] = False
         self._rows = boundary[1:] - (boundary[1:] > pinned)
-        self._cholesky = Cholesky(csc_array(L[kept][:, kept]))
-        self._n = len(kept)
+        self._cholesky = Cholesky(L.block(kept))
+        self._n = L.n - 1
 
     @property
     def factorisations(self) -> int:
