@@ -1,10 +1,12 @@
 """The classic flattenings, through libigl: for comparison, and for those who want just these.
 
-libigl trusts its input (a closed mesh ends the process) and has tolerances of its own, so a disk, with holes or without, is
-asked for before each call and handed over at the size of one.
+libigl trusts its input (a closed mesh ends the process), so a disk, with holes or without, is asked for before each call.
 """
 
 from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 import igl
 import numpy as np
@@ -29,39 +31,42 @@ def lscm(V: FloatArray, F: IntArray) -> FloatArray:
     loop = topology.boundary_loops[border_of(V, topology)]
     far = int(np.argmax(np.linalg.norm(V[loop] - V[loop[0]], axis=1)))
     held = np.array([loop[0], loop[far]], dtype=np.int64)
-    uv = igl.lscm(_unit(V), F, held, np.array([[0.0, 0.0], [1.0, 0.0]]))[0]
+    with _spoken_for("lscm"):
+        uv = igl.lscm(V, F, held, np.array([[0.0, 0.0], [1.0, 0.0]]))[0]
     return _finished(V, F, uv, "lscm")
 
 
 def harmonic(V: FloatArray, F: IntArray) -> FloatArray:
     """Harmonic map onto a circle (cotangent weights), holes filled; (n, 2) mm."""
     W, G = fill_holes(V, F)
-    W = _unit(W)
     loop = Topology(G).boundary_loops[0]
     circle = igl.map_vertices_to_circle(np.asfortranarray(W), loop.astype(np.int32))
-    uv = igl.harmonic(W, G, loop, np.ascontiguousarray(circle), 1)
+    with _spoken_for("harmonic"):
+        uv = igl.harmonic(W, G, loop, np.ascontiguousarray(circle), 1)
     return _finished(V, F, uv[: len(V)], "harmonic")
 
 
 def arap(V: FloatArray, F: IntArray) -> FloatArray:
     """As rigid as possible (Liu et al. 2008), from Tutte's embedding with holes filled; (n, 2) mm."""
-    W, start, border = _embedded(V, F)
+    start, border = _embedded(V, F)
     data = igl.ARAPData()
     data.max_iter = _ITERATIONS
     # Nothing held, the system is singular, and rounding decides whether it factors.
     held = border[:1].astype(np.int32)
-    igl.arap_precomputation(W, F, 2, held, data)
+    igl.arap_precomputation(V, F, 2, held, data)
     return _finished(V, F, igl.arap_solve(start[held], data, start), "arap")
 
 
 def slim(V: FloatArray, F: IntArray) -> FloatArray:
     """Scalable locally injective maps (Rabinovich et al. 2017) of least d, from Tutte's embedding with holes filled; (n, 2) mm."""
     # SLIM never returns from a start with a flip; Tutte's has none.
-    W, start, _ = _embedded(V, F)
+    start, _ = _embedded(V, F)
+    # ... and it has a tolerance with a unit: at a millionth of the size another map comes out.
+    size = float(np.linalg.norm(np.ptp(V, axis=0)))
     data = igl.slim_precompute(
-        np.asfortranarray(W),
+        np.asfortranarray(V / size),
         np.asfortranarray(F.astype(np.int32)),
-        np.asfortranarray(start),
+        np.asfortranarray(start / size),
         igl.MappingEnergyType.SYMMETRIC_DIRICHLET,
         np.zeros(0, dtype=np.int32),
         np.zeros((0, 2), order="F"),
@@ -70,18 +75,20 @@ def slim(V: FloatArray, F: IntArray) -> FloatArray:
     return _finished(V, F, np.asarray(igl.slim_solve(data, _ITERATIONS))[:, :2], "slim")
 
 
-def _unit(V: FloatArray) -> FloatArray:
-    """About the origin, and of size 1."""
-    box = np.ptp(V, axis=0)
-    size = float(np.linalg.norm(box))
-    return np.ascontiguousarray((V - V.min(axis=0) - box / 2) / (size if size > 0 else 1.0))
-
-
-def _embedded(V: FloatArray, F: IntArray) -> tuple[FloatArray, FloatArray, IntArray]:
-    """The surface at size 1, Tutte's embedding of it with its holes filled, and the border."""
+def _embedded(V: FloatArray, F: IntArray) -> tuple[FloatArray, IntArray]:
+    """Tutte's embedding with the holes filled, (n, 2) mm, and the border."""
     W, G = fill_holes(V, F)
-    W, filled = _unit(W), Topology(G)
-    return np.ascontiguousarray(W[: len(V)]), tutte_embedding(W, G, topology=filled)[: len(V)], filled.boundary_loops[0]
+    filled = Topology(G)
+    return tutte_embedding(W, G, topology=filled)[: len(V)], filled.boundary_loops[0]
+
+
+@contextmanager
+def _spoken_for(method: str) -> Iterator[None]:
+    """libigl's own failures in our words."""
+    try:
+        yield
+    except RuntimeError as fault:
+        raise RefusedError(f"{method} found no map of this mesh ({fault}); use --method auto") from fault
 
 
 def _finished(V: FloatArray, F: IntArray, uv: FloatArray, method: str) -> FloatArray:

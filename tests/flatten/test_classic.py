@@ -70,3 +70,13 @@ def test_a_result_that_is_no_number_is_refused(monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.setattr(classic.igl, "lscm", lambda *_: (np.full((len(V), 2), np.nan), None))
     with pytest.raises(RefusedError, match="lscm gave coordinates that are not numbers"):
         lscm(V, F)
+
+
+@pytest.mark.parametrize("method", [lscm, harmonic])
+def test_a_failure_of_libigls_own_is_a_refusal(method, monkeypatch: pytest.MonkeyPatch) -> None:
+    def fails(*_):
+        raise RuntimeError("igl failed")
+
+    monkeypatch.setattr(classic.igl, method.__name__, fails)
+    with pytest.raises(RefusedError, match=rf"{method.__name__} found no map of this mesh \(igl failed\); use --method auto"):
+        method(*shapes.wavy())
