@@ -103,12 +103,13 @@ def flatten_simplified(V: FloatArray, F: IntArray, *, topology: Topology | None 
     if len(F) < LEAST_COARSE * share:
         return plain("so few need no simplifying")
     if not np.isfinite(V).all() or not _is_disk(topology, len(V)):
-        return plain("only a disk is simplified")
+        return plain("only a disk without holes is simplified")
     try:
         coarse = decimate(V, F, faces=len(F) // share)
     except InputError as fault:
         return plain(str(fault))
-    if not _is_disk(Topology(coarse.F), len(coarse.V)):
+    few = Topology(coarse.F)
+    if not (_is_disk(few, len(coarse.V)) and few.is_oriented_manifold):
         return plain("simplifying would tear it or close it")
     solver = IsometricSolver(V, F)
     carried, correction = _carried(V, coarse)
@@ -139,8 +140,7 @@ def _open(V: FloatArray, F: IntArray, solver: IsometricSolver, start: FloatArray
 
 def _is_disk(topology: Topology, n_vertices: int) -> bool:
     return (
-        topology.is_oriented_manifold
-        and topology.euler == 1
+        topology.euler == 1
         and len(topology.boundary_loops) == 1
         and topology.face_components()[0] == 1
         and len(topology.used_vertices) == n_vertices

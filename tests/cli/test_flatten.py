@@ -8,6 +8,7 @@ import pytest
 import results
 import shapes
 
+from skinfab.bench.disks import bumpy_cap
 from skinfab.cli.flatten import NAMES
 from skinfab.cli.main import main
 from skinfab.flatten.methods import METHODS
@@ -134,3 +135,35 @@ def test_units_do_not_matter(scale: str, tmp_path: Path) -> None:
     assert main(["flatten", mesh, "-o", str(tmp_path / "s.obj"), "--units", "mm", "--scale", scale]) == 0
     plain, scaled = (results.distortion(*results.read_flat_obj(tmp_path / name))[0] for name in ("o.obj", "s.obj"))
     assert scaled == pytest.approx(plain, abs=1e-5)
+
+
+def test_simplify_says_what_it_did_and_keeps_d(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    mesh = written(tmp_path, *bumpy_cap(17_000))
+    means = []
+    for choice in ("off", "auto"):
+        out, figures = tmp_path / f"{choice}.obj", tmp_path / f"{choice}.json"
+        assert main(["flatten", mesh, "-o", str(out), "--units", "mm", "--simplify", choice, "--json", str(figures)]) == 0
+        mean, flipped = results.distortion(*results.read_flat_obj(out))
+        assert flipped == 0
+        means.append(mean)
+    (said,) = json.loads((tmp_path / "auto.json").read_text())["simplified"]
+    assert "simplified" not in json.loads((tmp_path / "off.json").read_text())
+    assert means[1] - means[0] <= said["effect"] < 0.002 and 0 < said["n_coarse"] < said["n_faces"] / 15
+    assert f"note: flattened on {said['n_coarse']} of {said['n_faces']} triangles; on all of them" in capsys.readouterr().err
+
+
+def test_simplify_leaves_what_is_small_and_what_is_cut(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    V, F = shapes.cap(8, 0.8)
+    command = ["flatten", written(tmp_path, V * 30, F), "-o", str(tmp_path / "o.obj"), "--method", "isometric", "--simplify", "auto"]
+    assert main(command) == 0
+    assert f"flattened on all {len(F)} triangles: so few need no simplifying" in capsys.readouterr().err
+    assert main(["flatten", CUBE, "-o", str(tmp_path / "o.obj"), "--simplify", "auto"]) == 0
+    assert "--simplify has no part in an automatic cut" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("method", ["bff", "bff-cones", "lscm", "slim"])
+def test_simplify_goes_with_what_minimises_d(method: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["flatten", CUBE, "-o", str(tmp_path / "o.obj"), "--method", method, "--simplify", "auto"]) == 2
+    assert (
+        f"--simplify auto goes with --method auto or isometric, whose aim is the least d; {method} has another" in capsys.readouterr().err
+    )
