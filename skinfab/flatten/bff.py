@@ -50,7 +50,8 @@ class BffSolver:
     Raises
     ------
     InputError
-        The mesh is not a disk, or a coordinate is not finite.
+        The mesh is not a disk, or a coordinate is not finite. From `angles`, `curve` and `disk`: a boundary vertex
+        has triangles without area only.
 
     Examples
     --------

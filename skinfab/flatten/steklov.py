@@ -9,8 +9,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from skinfab.errors import InputError
 from skinfab.flatten.graph_laplacian import GraphLaplacian
-from skinfab.linalg import Cholesky
+from skinfab.linalg import Cholesky, NotPositiveDefiniteError
 
 FloatArray = NDArray[np.float64]
 
@@ -25,6 +26,11 @@ class NeumannToDirichlet:
     boundary : (b,) int64
         Its boundary vertices, in the order in which slopes and values are given.
 
+    Raises
+    ------
+    InputError
+        A boundary vertex has triangles without area only: nothing follows from its slope.
+
     Examples
     --------
     >>> L = GraphLaplacian(np.array([[0, 1], [1, 2]]), np.ones(2), 3)  # a line of three vertices
@@ -37,7 +43,14 @@ class NeumannToDirichlet:
         kept = np.ones(L.n, dtype=bool)
         kept[pinned] = False
         self._rows = boundary[1:] - (boundary[1:] > pinned)
-        self._cholesky = Cholesky(L.block(kept))
+        try:
+            self._cholesky = Cholesky(L.block(kept))
+        except NotPositiveDefiniteError as fault:
+            loose = int(boundary[np.argmin(L.diagonal[boundary])])
+            raise InputError(
+                f"boundary vertex {loose} hangs on triangles without area, which tie its scale to nothing; cut them off, "
+                f"or leave the boundary free"
+            ) from fault
         self._n = L.n - 1
 
     @property

@@ -7,7 +7,7 @@ import pytest
 import shapes
 
 from skinfab.cli.main import main
-from skinfab.errors import RefusedError
+from skinfab.errors import InputError, RefusedError
 from skinfab.flatten.bff import BffSolver, flatten_disk
 from skinfab.flatten.bff_curve import scaled_lengths, turning_of
 from skinfab.flatten.bff_descent import conformal_energy
@@ -101,6 +101,17 @@ def test_a_triangle_with_three_boundary_vertices_on_a_straight_side_is_refused()
     assert (np.abs(singular_values(V, F, flat)[:, 1]) < 1e-9).any()
     with pytest.raises(RefusedError, match=r"\d of 800 triangles come out without area on the target curve, first triangle \d+: .* bulge"):
         solver.curve(RECTANGLE)
+
+
+def test_a_boundary_vertex_that_hangs_on_nothing_is_named() -> None:
+    """Across from it its only triangle has an edge without length, with right angles at both ends: their cotangents are zero."""
+    V, F = shapes.grid(4, 4)
+    V[9] = V[3]  # the corner 4 has the one triangle 3, 4, 9
+    solver = BffSolver(V, F)
+    assert np.isfinite(solver.free()).all()
+    for call in (solver.disk, lambda: solver.curve(star())):
+        with pytest.raises(InputError, match="boundary vertex 4 hangs on triangles without area"):
+            call()
 
 
 def test_negative_cotangents_turn_triangles_of_the_disk_over() -> None:
