@@ -43,7 +43,7 @@ def draw_methods(table: Table, path: Path, *, notes: Sequence[str] = ()) -> None
         _name(axes, rows)
     marks = "dots ours · squares peers · hollow: cut into pieces, flipped or overlapping · line: Pareto front · ring: the default"
     figure.text(0.5, 0.012, "\n".join([marks, *notes]), ha="center", va="bottom", fontsize=8)
-    atomic_write(path, _png(figure))
+    atomic_write(path, png(figure))
 
 
 def draw_refinement(refinement: Table, path: Path) -> None:
@@ -69,7 +69,7 @@ def draw_refinement(refinement: Table, path: Path) -> None:
         axes.legend(fontsize=8, loc="upper right", bbox_to_anchor=(1, 0.93))
     panels[0].set_ylabel("(mean d - least d) / (least d - 4)")
     figure.text(0.5, 0.02, f"the least d is drawn at {_FLOOR:g}; time since the start, setting up included", ha="center", fontsize=8)
-    atomic_write(path, _png(figure))
+    atomic_write(path, png(figure))
 
 
 def _panels(count: int, title: str) -> tuple[Figure, list[Axes]]:
@@ -129,7 +129,8 @@ def _name(axes: Axes, rows: Table) -> None:
 _SPOTS = [(dx, sign * dy) for dy in range(0, 200, 9) for sign in (-1, 1) for dx in (9, -9)]
 
 
-def _png(figure: Figure) -> bytes:
+def png(figure: Figure) -> bytes:
+    """The figure as a PNG file."""
     drawn = io.BytesIO()
     figure.savefig(drawn, format="png")
     return drawn.getvalue()

@@ -10,7 +10,10 @@ from pathlib import Path
 from skinfab.cli import steps
 
 #: What can be measured; `skinfab/bench/NAME.py` holds its `run`.
-NAMES = {"flatten": "time against distortion of the ways to flatten a disk"}
+NAMES = {
+    "flatten": "time against distortion of the ways to flatten a disk",
+    "simplify": "triangles solved for against distortion and time",
+}
 
 
 def name(text: str) -> str:
@@ -47,7 +50,9 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     )
     p.add_argument("names", metavar="NAME", nargs="*", type=name, help="what to measure (default: everything)")
     p.add_argument("-o", "--output", metavar="DIR", type=Path, required=True, help="the folder to write into")
-    p.add_argument("--sizes", metavar="N,N,...", type=sizes, help="triangles of the disks (default: 5000,20000,80000)")
+    p.add_argument(
+        "--sizes", metavar="N,N,...", type=sizes, help="triangles of the disks (default: 5000,20000,80000; simplify: 20000,80000,320000)"
+    )
     p.add_argument("--repeats", metavar="K", type=repeats, default=3, help="the least time of K counts (default: 3)")
     p.add_argument("--json", action="store_true", help="print one JSON object and nothing else")
     p.set_defaults(run=run, wrong_usage=p.error)

@@ -63,7 +63,9 @@ class Simplified:
         return f"flattened on {self.n_coarse} of {self.n_faces} triangles; on all of them the mean d is at most {self.effect:.2g} less"
 
 
-def flatten_simplified(V: FloatArray, F: IntArray, *, topology: Topology | None = None, share: int = SHARE) -> Simplified:
+def flatten_simplified(
+    V: FloatArray, F: IntArray, *, topology: Topology | None = None, share: int = SHARE, least_coarse: int = LEAST_COARSE
+) -> Simplified:
     """The flattening of least d, by way of a mesh of a `share`-th of the triangles where that is as good.
 
     Parameters
@@ -74,6 +76,8 @@ def flatten_simplified(V: FloatArray, F: IntArray, *, topology: Topology | None 
     topology : Topology, optional
     share : int
         Triangles of the mesh to one of the simplified mesh.
+    least_coarse : int
+        Where the simplified mesh would have fewer triangles, the mesh is flattened as it is.
 
     Returns
     -------
@@ -100,7 +104,7 @@ def flatten_simplified(V: FloatArray, F: IntArray, *, topology: Topology | None 
     def plain(why: str) -> Simplified:
         return Simplified(flatten_least(V, F, topology=topology), len(F), 0, 0.0, why)
 
-    if len(F) < LEAST_COARSE * share:
+    if len(F) < least_coarse * share:
         return plain("so few need no simplifying")
     if not np.isfinite(V).all() or not _is_disk(topology, len(V)):
         return plain("only a disk without holes is simplified")

@@ -23,14 +23,14 @@ def test_json_is_all_there_is_on_standard_output(tmp_path: Path, capsys: pytest.
 def test_the_sentence_is_printed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["bench", "-o", str(tmp_path), *SMALL]) == 0
     out = capsys.readouterr().out.splitlines()
-    assert out[0] == (tmp_path / "flatten.txt").read_text().splitlines()[0]
-    assert out[1].startswith("wrote ") and str(tmp_path / "refine.png") in out[1]
+    assert out[:2] == [(tmp_path / f"{name}.txt").read_text().splitlines()[0] for name in ("flatten", "simplify")]
+    assert out[2].startswith("wrote ") and all(str(tmp_path / name) in out[2] for name in ("refine.png", "simplify.png"))
 
 
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [
-        (["flaten"], "'flaten' is not measured; there are flatten"),
+        (["flaten"], "'flaten' is not measured; there are flatten, simplify"),
         (["--sizes", "300,x"], "'300,x' is not a list of numbers of triangles such as 5000,20000"),
         (["--repeats", "0"], "'0' is not a whole number from 1 up"),
     ],

@@ -53,10 +53,9 @@ def test_small_meshes_stay_as_they_are(shape: tuple[np.ndarray, np.ndarray]) -> 
     assert flat.sentence == f"flattened on all {len(F)} triangles: so few need no simplifying"
 
 
-def test_a_simplified_mesh_that_is_too_coarse_is_only_the_start(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(simplified, "LEAST_COARSE", 10)
+def test_a_simplified_mesh_that_is_too_coarse_is_only_the_start() -> None:
     V, F = bumpy_cap(4000)
-    flat = flatten_simplified(V, F, share=200)
+    flat = flatten_simplified(V, F, share=200, least_coarse=10)
     assert flat.n_coarse == 0 and flat.effect == 0 and "of the mean d to gain" in flat.sentence
     assert measure(V, F, flat.UV).mean == pytest.approx(measure(V, F, flatten_isometric(V, F)).mean, abs=1e-5)
 

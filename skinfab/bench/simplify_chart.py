@@ -1,0 +1,64 @@
+"""The chart of simplification: triangles solved for against what is lost of d, and against time."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from skinfab.bench.charts import png
+from skinfab.files import atomic_write
+from skinfab.flatten.simplified import SHARE
+from skinfab.tolerances import SIMPLIFY_EFFECT
+
+_COLOURS = ("#0b6e4f", "#b5451b", "#2b5c9e", "#7a4fa3", "#8a6d00", "#555555")
+_DPI = 150
+#: Where no loss at all is drawn on a logarithmic axis: rounding of the table's nine digits times a hundred.
+_FLOOR = 1e-7
+
+
+def draw(table: Sequence[Mapping[str, Any]], path: Path) -> None:
+    """Write the chart as PNG: a line a size, the default ringed, hollow where the simplified mesh was not good enough."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+    from matplotlib.ticker import LogLocator, NullFormatter
+
+    figure = Figure(figsize=(10.4, 5.4), dpi=_DPI)
+    FigureCanvasAgg(figure)
+    figure.subplots_adjust(left=0.075, right=0.985, top=0.88, bottom=0.2, wspace=0.2)
+    figure.suptitle("Simplifying before flattening: triangles solved for against distortion and time")
+    loss, time = figure.subplots(1, 2)
+    for k, size in enumerate(sorted({row["triangles"] for row in table})):
+        colour = _COLOURS[k % len(_COLOURS)]
+        rows = [row for row in table if row["triangles"] == size]
+        whole = next(row for row in rows if row["share"] == 1)
+        fewer = [row for row in rows if row["share"] > 1]
+        asked = [row["triangles"] // row["share"] for row in fewer]
+        lost = [max(row["mean_d"] - whole["mean_d"], _FLOOR) for row in fewer]
+        loss.plot(asked, lost, "-", color=colour, lw=1, label=f"{size} triangles")
+        carried = [(n, max(row["effect"], _FLOOR)) for n, row in zip(asked, fewer, strict=True) if row["carried"]]
+        loss.plot(*zip(*carried, strict=True) if carried else ([], []), ":", color=colour, lw=1)
+        time.plot([size, *asked], [row["seconds"] for row in [whole, *fewer]], "-", color=colour, lw=1, label=f"{size} triangles")
+        time.plot(size, whole["seconds"], "s", color=colour, ms=6)
+        for n, above, row in zip(asked, lost, fewer, strict=True):
+            face = colour if row["carried"] else "white"
+            for axes, y in ((loss, above), (time, row["seconds"])):
+                axes.plot(n, y, "o", color=colour, mfc=face, ms=5, zorder=3)
+                if row["share"] == SHARE:
+                    axes.plot(n, y, "o", ms=13, mfc="none", color=colour, mew=1.6, zorder=4)
+    loss.axhline(SIMPLIFY_EFFECT, color="#777777", lw=1, ls="--", label=f"{SIMPLIFY_EFFECT:g}: more is not carried")
+    loss.set_ylabel("mean d above that of all triangles")
+    time.set_ylabel("time, s")
+    for axes in (loss, time):
+        axes.set(xscale="log", yscale="log", xlabel="triangles solved for")
+        axes.grid(True, which="both", lw=0.3, alpha=0.6)
+        axes.legend(fontsize=8)
+    time.yaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    time.yaxis.set_major_formatter("{x:g}")
+    time.yaxis.set_minor_formatter(NullFormatter())
+    marks = (
+        f"ring: the default, one in {SHARE} · dotted: what the method says d could lose at most · square: all triangles · "
+        f"no more than {_FLOOR:g}: drawn there\nhollow: not good enough, refined on all triangles after all"
+    )
+    figure.text(0.5, 0.015, marks, ha="center", va="bottom", fontsize=8)
+    atomic_write(path, png(figure))
