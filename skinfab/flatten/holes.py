@@ -27,7 +27,7 @@ def border_of(V: FloatArray, topology: Topology) -> int:
     Raises
     ------
     InputError
-        Several components, unused vertices, a closed surface, handles, or a coordinate that is not finite.
+        Several components, unused or missing vertices, a closed surface, handles, or a coordinate that is not finite.
 
     Examples
     --------
@@ -35,6 +35,9 @@ def border_of(V: FloatArray, topology: Topology) -> int:
     >>> border_of(square, Topology(np.array([[0, 1, 2], [0, 2, 3]])))
     0
     """
+    if len(topology.F) and (topology.F.min() < 0 or topology.F.max() >= len(V)):
+        face = int(np.flatnonzero(((topology.F < 0) | (topology.F >= len(V))).any(axis=1))[0])
+        raise InputError(f"face {face} uses vertices {topology.F[face].tolist()}; there are 0 to {len(V) - 1}, so mend the mesh")
     loops = topology.boundary_loops
     components, _ = topology.face_components()
     unused = len(V) - len(topology.used_vertices)
@@ -142,7 +145,7 @@ def _between(V: FloatArray, loop: IntArray, topology: Topology) -> IntArray | No
     return inside if filled.edge_count.max() <= 2 and (topology.edge_ids(across) < 0).all() else None
 
 
-def flatten_filled(V: FloatArray, F: IntArray) -> FloatArray:
+def flatten_filled(V: FloatArray, F: IntArray, *, topology: Topology | None = None) -> FloatArray:
     """Free-boundary BFF of a surface with or without holes, with the fewest flips, at the scale of the least d.
 
     Parameters
@@ -150,6 +153,8 @@ def flatten_filled(V: FloatArray, F: IntArray) -> FloatArray:
     V : (n, 3) float64, mm
     F : (m, 3) int64
         One component of genus 0 with a boundary; every vertex in use.
+    topology : Topology, optional
+        Of `F`, where it is at hand.
 
     Returns
     -------
@@ -168,7 +173,7 @@ def flatten_filled(V: FloatArray, F: IntArray) -> FloatArray:
     >>> float(np.linalg.norm(uv[5] - uv[4]).round(6))
     0.424264
     """
-    topology = Topology(F)
+    topology = topology or Topology(F)
     W, G = fill_holes(V, F, topology=topology)
     uv = flatten_robust(W, G, topology=topology if G is F else None, counted=len(F))[: len(V)]
     return uv * best_scale(V, F, uv)
