@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import InitVar, dataclass
 from functools import cached_property
 
 import numpy as np
@@ -29,6 +29,8 @@ class Piece:
     F : (k, 3) int64
         The same faces by piece vertices.
     UV : (p, 2) float64, mm
+    known : Topology, optional
+        Of `F`, where it is at hand.
     """
 
     id: str
@@ -36,6 +38,11 @@ class Piece:
     vertices: NDArray[np.int64]
     F: NDArray[np.int64]
     UV: NDArray[np.float64]
+    known: InitVar[Topology | None] = None
+
+    def __post_init__(self, known: Topology | None) -> None:
+        if known is not None:
+            vars(self)["topology"] = known  # as `topology` itself would keep it
 
     def __repr__(self) -> str:
         w, h = self.size

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from skinfab.flatten.methods import Flatten
     from skinfab.flatten.simplified import Simplified
     from skinfab.mesh.model import Mesh
+    from skinfab.mesh.topology import Topology
     from skinfab.pieces import Piece
     from skinfab.seams.cut import OpenPiece
 
@@ -113,13 +114,12 @@ def _flatten(args: argparse.Namespace, mesh: Mesh, simplified: list[Simplified])
         listed = _vertices(wanted) if isinstance(wanted, list) else None
         count = wanted if isinstance(wanted, int) else None
         _, piece, uv, _ = flatten_with_cones(mesh, cones=listed, count=count)
-        return _as_pieces(mesh, [(piece.faces, piece.vertices, piece.F, uv)])
+        return _as_pieces(mesh, [piece], [uv])
     opened = open_pieces(mesh, mesh.topology.is_boundary)
     flatten = _method(args, simplified)
     if args.method == "auto":
         if all(_has_border_and_no_handle(piece) for piece in opened):
-            flat = [(p.faces, p.vertices, p.F, flatten(mesh.V[p.vertices], p.F)) for p in opened]
-            pieces, distortions = _as_pieces(mesh, flat)
+            pieces, distortions = _as_pieces(mesh, opened, [flatten(mesh.V[p.vertices], p.F, topology=p.topology) for p in opened])
             # A tube, open at both ends, is a disk with a hole too: where it would stretch too far it is cut.
             lie = [p.is_disk or d.mean <= args.max_distortion for p, d in zip(opened, distortions, strict=True)]
             if all(lie) and not any(d.overlap_mm2 > 0 or d.flipped for d in distortions):
@@ -128,7 +128,7 @@ def _flatten(args: argparse.Namespace, mesh: Mesh, simplified: list[Simplified])
             simplified.clear()
             steps.say(["--simplify has no part in an automatic cut, whose pieces are flattened on all their triangles"])
         return _cut(mesh, args.max_distortion)
-    return _as_pieces(mesh, [(p.faces, p.vertices, p.F, flatten(mesh.V[p.vertices], p.F)) for p in opened])
+    return _as_pieces(mesh, opened, [flatten(mesh.V[p.vertices], p.F, topology=p.topology) for p in opened])
 
 
 def _has_border_and_no_handle(piece: OpenPiece) -> bool:
@@ -144,8 +144,8 @@ def _method(args: argparse.Namespace, simplified: list[Simplified]) -> Flatten:
         return method("isometric" if args.method == "auto" else args.method)
     from skinfab.flatten.simplified import flatten_simplified
 
-    def flatten(V: NDArray[np.float64], F: NDArray[np.int64]) -> NDArray[np.float64]:
-        simplified.append(flatten_simplified(V, F))
+    def flatten(V: NDArray[np.float64], F: NDArray[np.int64], *, topology: Topology | None = None) -> NDArray[np.float64]:
+        simplified.append(flatten_simplified(V, F, topology=topology))
         return simplified[-1].UV
 
     return flatten
@@ -174,14 +174,13 @@ def _vertices(numbers: list[int]) -> NDArray[np.int64]:
     return np.array(numbers, dtype=np.int64)
 
 
-def _as_pieces(
-    mesh: Mesh, flat: list[tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]]
-) -> tuple[list[Piece], list[Distortion]]:
+def _as_pieces(mesh: Mesh, opened: list[OpenPiece], layouts: list[NDArray[np.float64]]) -> tuple[list[Piece], list[Distortion]]:
     from skinfab.flatten.distortion import measure
     from skinfab.flatten.orient import orient
     from skinfab.pieces import Piece
 
-    pieces = [Piece(f"P{k}", faces, vertices, F, orient(uv)) for k, (faces, vertices, F, uv) in enumerate(flat, start=1)]
+    together = enumerate(zip(opened, layouts, strict=True), start=1)
+    pieces = [Piece(f"P{k}", p.faces, p.vertices, p.F, orient(uv), p.topology) for k, (p, uv) in together]
     return pieces, [measure(p.V(mesh), p.F, p.UV, topology=p.topology) for p in pieces]
 
 

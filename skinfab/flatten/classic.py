@@ -25,9 +25,9 @@ IntArray = NDArray[np.int64]
 _ITERATIONS = 30
 
 
-def lscm(V: FloatArray, F: IntArray) -> FloatArray:
+def lscm(V: FloatArray, F: IntArray, *, topology: Topology | None = None) -> FloatArray:
     """Least squares conformal map (Levy et al. 2002), two far border vertices held, holes free; (n, 2) mm."""
-    topology = Topology(F)
+    topology = topology or Topology(F)
     loop = topology.boundary_loops[border_of(V, topology)]
     far = int(np.argmax(np.linalg.norm(V[loop] - V[loop[0]], axis=1)))
     held = np.array([loop[0], loop[far]], dtype=np.int64)
@@ -36,9 +36,9 @@ def lscm(V: FloatArray, F: IntArray) -> FloatArray:
     return _finished(V, F, uv, "lscm")
 
 
-def harmonic(V: FloatArray, F: IntArray) -> FloatArray:
+def harmonic(V: FloatArray, F: IntArray, *, topology: Topology | None = None) -> FloatArray:
     """Harmonic map onto a circle (cotangent weights), holes filled; (n, 2) mm."""
-    W, G = fill_holes(V, F)
+    W, G = fill_holes(V, F, topology=topology)
     loop = Topology(G).boundary_loops[0]
     circle = igl.map_vertices_to_circle(np.asfortranarray(W), loop.astype(np.int32))
     with _spoken_for("harmonic"):
@@ -46,9 +46,9 @@ def harmonic(V: FloatArray, F: IntArray) -> FloatArray:
     return _finished(V, F, uv[: len(V)], "harmonic")
 
 
-def arap(V: FloatArray, F: IntArray) -> FloatArray:
+def arap(V: FloatArray, F: IntArray, *, topology: Topology | None = None) -> FloatArray:
     """As rigid as possible (Liu et al. 2008), from Tutte's embedding with holes filled; (n, 2) mm."""
-    start, border = _embedded(V, F)
+    start, border = _embedded(V, F, topology)
     data = igl.ARAPData()
     data.max_iter = _ITERATIONS
     # Nothing held, the system is singular, and rounding decides whether it factors.
@@ -57,10 +57,10 @@ def arap(V: FloatArray, F: IntArray) -> FloatArray:
     return _finished(V, F, igl.arap_solve(start[held], data, start), "arap")
 
 
-def slim(V: FloatArray, F: IntArray) -> FloatArray:
+def slim(V: FloatArray, F: IntArray, *, topology: Topology | None = None) -> FloatArray:
     """Scalable locally injective maps (Rabinovich et al. 2017) of least d, from Tutte's embedding with holes filled; (n, 2) mm."""
     # SLIM never returns from a start with a flip; Tutte's has none.
-    start, _ = _embedded(V, F)
+    start, _ = _embedded(V, F, topology)
     # ... and it has a tolerance with a unit: at a millionth of the size another map comes out.
     size = float(np.linalg.norm(np.ptp(V, axis=0)))
     data = igl.slim_precompute(
@@ -75,9 +75,9 @@ def slim(V: FloatArray, F: IntArray) -> FloatArray:
     return _finished(V, F, np.asarray(igl.slim_solve(data, _ITERATIONS))[:, :2], "slim")
 
 
-def _embedded(V: FloatArray, F: IntArray) -> tuple[FloatArray, IntArray]:
+def _embedded(V: FloatArray, F: IntArray, topology: Topology | None) -> tuple[FloatArray, IntArray]:
     """Tutte's embedding with the holes filled, (n, 2) mm, and the border."""
-    W, G = fill_holes(V, F)
+    W, G = fill_holes(V, F, topology=topology)
     filled = Topology(G)
     return tutte_embedding(W, G, topology=filled)[: len(V)], filled.boundary_loops[0]
 

@@ -63,9 +63,12 @@ def intrinsic(V: FloatArray, F: NDArray[np.int64]) -> Intrinsic:
     >>> np.degrees(t.angle).round(6).tolist()
     [[90.0, 45.0, 45.0]]
     """
-    p = V[F]
-    ahead, behind = np.roll(p, -1, axis=1) - p, np.roll(p, 1, axis=1) - p
-    dot = np.einsum("mki,mki->mk", ahead, behind)
+    a, b, c = np.ascontiguousarray(F.T)
+    dot = np.zeros((len(F), 3))
+    for x in np.ascontiguousarray(V.T):
+        ab, bc, ca = x[b] - x[a], x[c] - x[b], x[a] - x[c]
+        for corner, (ahead, behind) in enumerate(((ab, ca), (bc, ab), (ca, bc))):
+            dot[:, corner] -= ahead * behind
     area, shaped = shaped_areas(V, F)
     twice_area = 2 * area
     if not shaped.all():

@@ -1,20 +1,29 @@
 """The methods that flatten one disk, with holes or without, by name: to add one, add one entry.
 
 An entry is ``module:function``; the function takes V (n, 3) and F (m, 3) of one component of genus 0 with a
-boundary and returns UV (n, 2) in mm. Modules are imported when asked for, so that a fast method does not wait for another's library.
+boundary, and F's topology where it is at hand, and returns UV (n, 2) in mm. Modules are imported when asked for,
+so that a fast method does not wait for another's library.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from importlib import import_module
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from skinfab.errors import InputError
+from skinfab.mesh.topology import Topology
 
-Flatten = Callable[[NDArray[np.float64], NDArray[np.int64]], NDArray[np.float64]]
+
+class Flatten(Protocol):
+    """What every method looks like."""
+
+    __name__: str
+
+    def __call__(self, V: NDArray[np.float64], F: NDArray[np.int64], *, topology: Topology | None = None) -> NDArray[np.float64]: ...
+
 
 METHODS = {
     "bff": "skinfab.flatten.holes:flatten_filled",

@@ -49,4 +49,4 @@ def _outer(UV: NDArray[np.float64]) -> NDArray[np.float64]:
         if ax != bx or ay != by:
             inside &= (bx - ax) * (y - ay) - (by - ay) * (x - ax) > rounding
     # A polygon of one or two corners has no inside.
-    return UV[~inside] if len(np.unique(far)) > 2 else UV
+    return UV[~inside] if len(set(far.tolist())) > 2 else UV

@@ -7,7 +7,7 @@ opens it as naturally as one that parts it.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import InitVar, dataclass
 from functools import cached_property
 
 import numpy as np
@@ -33,11 +33,18 @@ class OpenPiece:
         The mesh vertex of each piece vertex.
     F : (k, 3) int64
         The faces by piece vertices.
+    known : Topology, optional
+        Of `F`, where it is at hand.
     """
 
     faces: IntArray
     vertices: IntArray
     F: IntArray
+    known: InitVar[Topology | None] = None
+
+    def __post_init__(self, known: Topology | None) -> None:
+        if known is not None:
+            vars(self)["topology"] = known  # as `topology` itself would keep it
 
     @cached_property
     def topology(self) -> Topology:
@@ -98,15 +105,13 @@ def open_pieces(mesh: Mesh, cut: BoolArray, *, faces: IntArray | None = None) ->
 
 
 def _whole(mesh: Mesh) -> OpenPiece:
-    """All of a mesh in one piece with nothing to open: its vertices, numbered as its corners meet them."""
-    corner = mesh.F.ravel()
-    place = np.arange(len(corner))
-    first = np.empty(len(mesh.V), dtype=np.int64)
-    first[corner[::-1]] = place[::-1]
-    vertices = corner[first[corner] == place]
-    number = np.empty(len(mesh.V), dtype=np.int64)
-    number[vertices] = np.arange(len(vertices))
-    return OpenPiece(np.arange(len(mesh.F)), vertices, number[mesh.F])
+    """All of a mesh in one piece with nothing to open: its vertices, without those that no face uses."""
+    used = mesh.topology.used_vertices
+    if len(used) == len(mesh.V):
+        return OpenPiece(np.arange(len(mesh.F)), used, mesh.F, mesh.topology)
+    number = np.full(len(mesh.V), -1)
+    number[used] = np.arange(len(used))
+    return OpenPiece(np.arange(len(mesh.F)), used, number[mesh.F])
 
 
 def mesh_edges(mesh: Mesh, piece: OpenPiece, edges: IntArray) -> IntArray:
