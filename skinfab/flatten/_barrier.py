@@ -46,64 +46,72 @@ def barrier_energy(u: FloatArray, loop: IntArray, reach: float) -> float:
 
 
 @numba.njit(cache=True)
-def barrier_assemble(
-    u: FloatArray, loop: IntArray, reach: float, weight: float, indptr: IntArray, data: FloatArray, gradient: FloatArray
-) -> None:
-    """Add the barrier's gradient, and a block-diagonal majoriser of its Gauss-Newton Hessian: the pattern stays as it is."""
+def near_pairs(u: FloatArray, loop: IntArray, within: float) -> IntArray:
+    """Vertices of the loop with the edges that they do not bound and are nearer to than `within`: (k, 3) vertex, edge's ends."""
     n = loop.shape[0]
-    coefficient = np.empty(3)
+    found = np.empty((4 * n, 3), dtype=np.int64)
+    count = 0
     for j in range(n):
         a, b = loop[j], loop[(j + 1) % n]
-        low_x, high_x = min(u[a, 0], u[b, 0]) - reach, max(u[a, 0], u[b, 0]) + reach
-        low_y, high_y = min(u[a, 1], u[b, 1]) - reach, max(u[a, 1], u[b, 1]) + reach
+        low_x, high_x = min(u[a, 0], u[b, 0]) - within, max(u[a, 0], u[b, 0]) + within
+        low_y, high_y = min(u[a, 1], u[b, 1]) - within, max(u[a, 1], u[b, 1]) + within
         for i in range(n):
             p = loop[i]
             x, y = u[p, 0], u[p, 1]
             if x < low_x or x > high_x or y < low_y or y > high_y or p in (a, b):
                 continue
-            distance, nx, ny, t = _nearest(x, y, u[a, 0], u[a, 1], u[b, 0], u[b, 1])
-            if not 0.0 < distance < reach:
+            if _nearest(x, y, u[a, 0], u[a, 1], u[b, 0], u[b, 1])[0] >= within:
                 continue
-            near = reach / distance
-            first = -2.0 * (near - 1.0) * near / distance * weight
-            second = (2.0 * near * near + 4.0 * (near - 1.0) * near) / (distance * distance) * weight
-            coefficient[0], coefficient[1], coefficient[2] = 1.0, -(1.0 - t), -t
-            for k in range(3):
-                v = p if k == 0 else (a if k == 1 else b)
-                c = coefficient[k]
-                gradient[2 * v] += first * c * nx
-                gradient[2 * v + 1] += first * c * ny
-                # w w^T with |w_p| + |w_a| + |w_b| = 2 is at most its diagonal blocks times 2 / |w_k|.
-                h = second * 2.0 * abs(c)
-                data[indptr[2 * v]] += h * nx * nx
-                data[indptr[2 * v] + 1] += h * nx * ny
-                data[indptr[2 * v + 1]] += h * ny * ny
+            if count == found.shape[0]:
+                found = np.concatenate((found, np.empty_like(found)))
+            found[count, 0], found[count, 1], found[count, 2] = p, a, b
+            count += 1
+    return found[:count].copy()
 
 
 @numba.njit(cache=True)
-def barrier_gradient(u: FloatArray, loop: IntArray, reach: float, weight: float, gradient: FloatArray) -> None:
-    """Add the barrier's gradient."""
-    n = loop.shape[0]
-    for j in range(n):
-        a, b = loop[j], loop[(j + 1) % n]
-        low_x, high_x = min(u[a, 0], u[b, 0]) - reach, max(u[a, 0], u[b, 0]) + reach
-        low_y, high_y = min(u[a, 1], u[b, 1]) - reach, max(u[a, 1], u[b, 1]) + reach
-        for i in range(n):
-            p = loop[i]
-            x, y = u[p, 0], u[p, 1]
-            if x < low_x or x > high_x or y < low_y or y > high_y or p in (a, b):
-                continue
-            distance, nx, ny, t = _nearest(x, y, u[a, 0], u[a, 1], u[b, 0], u[b, 1])
-            if not 0.0 < distance < reach:
-                continue
-            near = reach / distance
-            first = -2.0 * (near - 1.0) * near / distance * weight
-            gradient[2 * p] += first * nx
-            gradient[2 * p + 1] += first * ny
-            gradient[2 * a] -= first * (1.0 - t) * nx
-            gradient[2 * a + 1] -= first * (1.0 - t) * ny
-            gradient[2 * b] -= first * t * nx
-            gradient[2 * b + 1] -= first * t * ny
+def barrier_gradient(u: FloatArray, pairs: IntArray, reach: float, weight: float, gradient: FloatArray) -> None:
+    """Add the barrier's gradient; `pairs` are all that are within reach, others do no harm."""
+    for q in range(pairs.shape[0]):
+        p, a, b = pairs[q]
+        distance, nx, ny, t = _nearest(u[p, 0], u[p, 1], u[a, 0], u[a, 1], u[b, 0], u[b, 1])
+        if not 0.0 < distance < reach:
+            continue
+        near = reach / distance
+        first = -2.0 * (near - 1.0) * near / distance * weight
+        for v, c in ((p, 1.0), (a, t - 1.0), (b, -t)):
+            gradient[2 * v] += first * c * nx
+            gradient[2 * v + 1] += first * c * ny
+
+
+@numba.njit(cache=True)
+def barrier_hessian(
+    u: FloatArray, pairs: IntArray, place: IntArray, reach: float, weight: float, indptr: IntArray, data: FloatArray
+) -> None:
+    """Add its Gauss-Newton Hessian to the values of a pattern that joins each pair's vertices as `vertex_pattern` does.
+
+    The couplings count: without them two sides in contact would not slide or move together.
+    """
+    coefficient = np.empty(3)
+    for q in range(pairs.shape[0]):
+        p, a, b = pairs[q]
+        distance, nx, ny, t = _nearest(u[p, 0], u[p, 1], u[a, 0], u[a, 1], u[b, 0], u[b, 1])
+        if not 0.0 < distance < reach:
+            continue
+        near = reach / distance
+        second = (2.0 * near * near + 4.0 * (near - 1.0) * near) / (distance * distance) * weight
+        coefficient[0], coefficient[1], coefficient[2] = 1.0, t - 1.0, -t
+        for k in range(3):
+            v, w = pairs[q, k], pairs[q, (k + 1) % 3]
+            h = second * coefficient[k] ** 2
+            data[indptr[2 * v]] += h * nx * nx
+            data[indptr[2 * v] + 1] += h * nx * ny
+            data[indptr[2 * v + 1]] += h * ny * ny
+            h = second * coefficient[k] * coefficient[(k + 1) % 3]
+            for i, n in ((0, nx), (1, ny)):
+                slot = indptr[2 * min(v, w) + i] + 2 - i + 2 * place[q, k]
+                data[slot] += h * n * nx
+                data[slot + 1] += h * n * ny
 
 
 @numba.njit(cache=True)

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csc_array
 
 from skinfab.errors import InputError
-from skinfab.flatten._barrier import barrier_assemble, barrier_energy, barrier_gradient, first_crossing
+from skinfab.flatten._barrier import barrier_energy, barrier_gradient, barrier_hessian, first_crossing, near_pairs
 from skinfab.flatten._dirichlet import assemble, energies, extremes, first_collapse, gradient_of, vertex_pattern
 from skinfab.flatten.distortion import local_triangles, shaped_areas
 from skinfab.flatten.laplacian import mollified_lengths
@@ -33,6 +33,9 @@ MOST_STEPS = 60
 
 #: A step by an earlier Hessian is taken when it promises less than this fraction of what the step before it did.
 _CONTRACTION = 0.25
+
+#: Boundary vertices and edges nearer than this many reaches of the barrier are joined in the matrix.
+_SPARE = 1.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,13 +99,14 @@ class IsometricSolver:
         twice_area = self.rest[:, 0, 0] * self.rest[:, 1, 1]
         self.weight = twice_area / twice_area.sum()
         self.gradients = _basis_gradients(self.rest, twice_area)
-        self._indptr, self._indices, self._place = vertex_pattern(self.F, self.n)
         self._cholesky: Cholesky | None = None
+        self._discarded = 0
+        self._join(np.empty((0, 3), dtype=np.int64))
 
     @property
     def factorisations(self) -> int:
         """How many numeric factorisations were done."""
-        return self._cholesky.factorisations if self._cholesky else 0
+        return self._discarded + (self._cholesky.factorisations if self._cholesky else 0)
 
     def refine(
         self,
@@ -182,15 +186,17 @@ class IsometricSolver:
 
     def _step(self, u: FloatArray, apart: Apart | None, *, renew: bool) -> tuple[FloatArray, float]:
         """Downhill by the Hessian here (`renew`) or by the last that was factored, and the energy's slope along it."""
+        if renew and apart:
+            self._couple(u, apart)
         if renew or self._cholesky is None:
             data, gradient = assemble(u, self.F, self.gradients, self.weight, self._place, self._indptr)
             if apart:
-                barrier_assemble(u, apart.loop, apart.reach, apart.weight, self._indptr, data, gradient)
+                barrier_hessian(u, self._pairs, self._pair_place, apart.reach, apart.weight, self._indptr, data)
             self._factor(data)
         else:
             gradient = gradient_of(u, self.F, self.gradients, self.weight)
-            if apart:
-                barrier_gradient(u, apart.loop, apart.reach, apart.weight, gradient)
+        if apart:
+            barrier_gradient(u, near_pairs(u, apart.loop, apart.reach), apart.reach, apart.weight, gradient)
         assert self._cholesky is not None
         step = self._cholesky.solve(-gradient)
         return step.reshape(-1, 2), float(gradient @ step)
@@ -199,6 +205,19 @@ class IsometricSolver:
         # The rigid motions cost nothing: a ridge far below the stiffness fixes them.
         diagonal = self._indptr[:-1]
         data[diagonal] += NEWTON_RIDGE * data[diagonal].mean()
+
+    def _couple(self, u: FloatArray, apart: Apart) -> None:
+        """Give what is in contact a place in the matrix; with some to spare, as each new pattern is to be analysed anew."""
+        now = near_pairs(u, apart.loop, apart.reach)
+        have = {tuple(pair) for pair in self._pairs.tolist()}
+        if any(tuple(pair) not in have for pair in now.tolist()):
+            self._join(near_pairs(u, apart.loop, _SPARE * apart.reach))
+
+    def _join(self, pairs: NDArray[np.int64]) -> None:
+        self._pairs = pairs
+        self._indptr, self._indices, place = vertex_pattern(np.concatenate([self.F, pairs]), self.n)
+        self._place, self._pair_place = place[: len(self.F)], place[len(self.F) :]
+        self._discarded, self._cholesky = self.factorisations, None
 
     def _factor(self, data: FloatArray) -> None:
         self._hold(data)
