@@ -159,7 +159,7 @@ class BffSolver:
             Fewer than three points, one that is not finite, or a curve that does not run counter-clockwise.
         RefusedError
             A triangle would be turned over (at a corner that turns inwards, most often), or be flattened to a line
-            because all its vertices are on the boundary and fall on one straight side.
+            because all its vertices are on the boundary and fall on one straight side (`ears.cut_ears` takes such off).
         """
         target = np.asarray(target_points, dtype=np.float64)
         if target.ndim != 2 or target.shape[1] != 2 or len(target) < 3 or not np.isfinite(target).all():

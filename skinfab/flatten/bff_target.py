@@ -128,7 +128,7 @@ def require_upright(V: FloatArray, F: IntArray, uv: FloatArray, shape: str) -> N
     if len(flat):
         raise RefusedError(
             f"{len(flat)} of {len(F)} triangles come out without area on {shape}, first triangle {flat[0]}: its vertices lie on one "
-            f"straight side; bulge it, give it more points where it should be round, or cut the triangle off"
+            f"straight side; bulge it, give it more points where it should be round, or cut such triangles off (flatten.ears.cut_ears)"
         )
 
 
