@@ -21,7 +21,7 @@ def ragged() -> tuple[np.ndarray, np.ndarray]:
     """A sheet with two rows of teeth on it: an ear on an ear."""
     V, F = shapes.grid(8, 6)
     teeth = np.column_stack([np.arange(8) / 8 + 0.06, np.full(8, -0.1), np.zeros(8)])
-    tips = teeth + [0.03, -0.1, 0]
+    tips = teeth + np.array([0.03, -0.1, 0])
     k = np.arange(8)
     first, second = np.column_stack([k, 63 + k, k + 1]), np.column_stack([k, 71 + k, 63 + k])
     return np.vstack([V, teeth, tips]), np.vstack([F, first, second])
