@@ -1,8 +1,9 @@
-"""Boundary first flattening of a disk (Sawhney and Crane 2017), from one Cholesky factorisation.
+"""Boundary first flattening of a disk (Sawhney and Crane 2017), from one Cholesky factorisation or two.
 
 The factor of the interior block of the cotangent Laplacian serves every step: the scale factors (Dirichlet
-solve), the boundary's new curvature (Dirichlet-to-Neumann map, and back) and the extension of the boundary
-curve into the interior (two harmonic functions). Numbers in comments are the paper's sections.
+solve), the boundary's new curvature (Dirichlet-to-Neumann map) and the extension of the boundary curve into the
+interior (two harmonic functions). The way back from curvature to scale, which only prescribed angles, curves and
+the disk need, has a factor of its own. Numbers in comments are the paper's sections.
 """
 
 from __future__ import annotations
