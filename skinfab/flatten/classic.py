@@ -21,7 +21,7 @@ from skinfab.mesh.topology import Topology
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-#: Enough for both to settle on real meshes; SLIM's and ARAP's own papers use 10 to 20.
+#: More than the 10 to 20 of SLIM's and ARAP's own papers; far from flat neither has settled by then (`bench/optimum.py` waits).
 _ITERATIONS = 30
 
 
