@@ -30,6 +30,8 @@ IntArray = NDArray[np.int64]
 SHARE = 16
 #: With fewer coarse triangles than this there is nothing to gain: a mesh that small is flattened as it is.
 LEAST_COARSE = 1000
+#: A decimation that comes no further down than to one in so many (a flat strip has no vertex it could spare) saves nothing.
+_LEAST_SAVING = 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,6 +114,8 @@ def flatten_simplified(
         coarse = decimate(V, F, faces=len(F) // share)
     except InputError as fault:
         return plain(str(fault))
+    if len(coarse.F) > len(F) / _LEAST_SAVING:
+        return plain("next to none of them can be spared")
     few = Topology(coarse.F)
     if not (_is_disk(few, len(coarse.V)) and few.is_oriented_manifold):
         return plain("simplifying would tear it or close it")

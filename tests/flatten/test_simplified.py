@@ -60,6 +60,12 @@ def test_a_simplified_mesh_that_is_too_coarse_is_only_the_start() -> None:
     assert measure(V, F, flat.UV).mean == pytest.approx(measure(V, F, flatten_isometric(V, F)).mean, abs=1e-5)
 
 
+def test_where_nothing_can_be_spared_all_are_solved_for() -> None:
+    """A flat strip: every vertex is on the boundary."""
+    V, F = shapes.grid(10_000, 1)
+    assert flatten_simplified(V, F).sentence == "flattened on all 20000 triangles: next to none of them can be spared"
+
+
 def test_a_tear_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
     """The decimation does not promise a disk; a coarse mesh that is none is not used."""
 
