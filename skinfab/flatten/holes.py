@@ -6,11 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skinfab.errors import InputError
-from skinfab.flatten.distortion import best_scale
+from skinfab.flatten.distortion import best_scale, singular_values
 from skinfab.flatten.robust import flatten_robust
 from skinfab.mesh.polygons import triangulate
 from skinfab.mesh.topology import Topology
-from skinfab.tolerances import OVERLAP_FRACTION
+from skinfab.tolerances import FLAT_START, OVERLAP_FRACTION
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -89,7 +89,8 @@ def fill_holes(V: FloatArray, F: IntArray, *, topology: Topology | None = None) 
     Raises
     ------
     InputError
-        Even with its holes filled it is no disk: closed, with a handle, or in several components.
+        Even with its holes filled it is no disk: closed, with a handle, or in several components; or a hole is
+        pinched to a vertex.
 
     Examples
     --------
@@ -106,6 +107,11 @@ def fill_holes(V: FloatArray, F: IntArray, *, topology: Topology | None = None) 
     for k, loop in enumerate(topology.boundary_loops):
         if k == border:
             continue
+        if len(np.unique(loop)) < len(loop):
+            twice = int(np.flatnonzero(np.bincount(loop) > 1)[0])
+            raise InputError(
+                f"a hole meets itself at vertex {twice}; give each side a vertex of its own there, as reading from a file does"
+            )
         middle = _middle(V[loop])
         if _folds(V[loop], middle) and (inside := _between(V, loop, topology)) is not None:
             fillings.append(inside)
@@ -202,7 +208,7 @@ def flatten_least(V: FloatArray, F: IntArray, *, topology: Topology | None = Non
     InputError
         Even with its holes filled it is no disk: closed, with a handle, or in several components.
     """
-    from skinfab.flatten.disk import flatten_isometric
+    from skinfab.flatten.disk import flatten_isometric, lower
     from skinfab.flatten.isometric import IsometricSolver
     from skinfab.flatten.overlap import overlap_area
 
@@ -210,10 +216,20 @@ def flatten_least(V: FloatArray, F: IntArray, *, topology: Topology | None = Non
     W, G = fill_holes(V, F, topology=topology)
     if G is F:
         return flatten_isometric(V, F, topology=topology)
+    start = flatten_robust(W, G, counted=len(F))[: len(V)]
+    s = singular_values(V, F, start)
+    if np.isfinite(s).all() and s[:, 1].min() >= FLAT_START * s[:, 0].max():
+        freed = lower(V, F, start, topology=topology).UV
+        if overlap_area(F, freed, topology=topology) <= _nothing(freed):
+            return freed
     filled = flatten_isometric(W, G)[: len(V)]
     filled = filled * best_scale(V, F, filled)
     freed = IsometricSolver(V, F).refine(filled).UV
-    allowed = OVERLAP_FRACTION * float(np.prod(np.ptp(freed, axis=0)))
-    if overlap_area(F, freed, topology=topology) <= overlap_area(F, filled, topology=topology) + allowed:
+    if overlap_area(F, freed, topology=topology) <= overlap_area(F, filled, topology=topology) + _nothing(freed):
         return freed
     return filled
+
+
+def _nothing(UV: FloatArray) -> float:
+    """An area that is none, mm^2."""
+    return OVERLAP_FRACTION * float(np.prod(np.ptp(UV, axis=0)))

@@ -9,6 +9,7 @@ from skinfab.flatten.disk import flatten_isometric
 from skinfab.flatten.distortion import best_scale, measure, shaped_areas, singular_values
 from skinfab.flatten.holes import border_of, fill_holes, flatten_filled, flatten_least
 from skinfab.flatten.isometric import IsometricSolver
+from skinfab.mesh.door import load_usable
 from skinfab.mesh.topology import Topology
 
 
@@ -150,3 +151,22 @@ def test_a_disk_is_left_alone() -> None:
 def test_what_stays_no_disk_is_named(mesh) -> None:
     with pytest.raises(InputError, match="only a disk can be flattened"):
         flatten_filled(*mesh)
+
+
+def pinched() -> tuple[np.ndarray, np.ndarray]:
+    """Two holes that meet in a corner: one vertex with two fans of faces."""
+    return shapes.holed(holes=((4, 4), (5, 5)))
+
+
+def test_a_hole_pinched_to_a_vertex_is_named_and_a_files_is_taken_apart(tmp_path) -> None:
+    V, F = pinched()
+    vertex = 5 * 13 + 5
+    assert [len(loop) for loop in Topology(F).boundary_loops][1:] == [8]
+    with pytest.raises(InputError, match=f"a hole meets itself at vertex {vertex}; .* as reading from a file does"):
+        fill_holes(V, F)
+    path = tmp_path / "pinched.obj"
+    path.write_text("".join(f"v {x} {y} {z}\n" for x, y, z in V.tolist()) + "".join(f"f {a} {b} {c}\n" for a, b, c in (F + 1).tolist()))
+    mesh = load_usable(path).mesh
+    assert len(mesh.V) == len(V) + 1
+    figures = measure(mesh.V, mesh.F, flatten_filled(mesh.V, mesh.F))
+    assert figures.flipped == 0 and figures.mean == pytest.approx(4, abs=1e-9)
