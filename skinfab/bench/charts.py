@@ -68,7 +68,9 @@ def draw_refinement(refinement: Table, path: Path) -> None:
         axes.set_title(f"{size} triangles")
         axes.legend(fontsize=8, loc="upper right", bbox_to_anchor=(1, 0.93))
     panels[0].set_ylabel("(mean d - least d) / (least d - 4)")
-    figure.text(0.5, 0.02, f"the least d is drawn at {_FLOOR:g}; time since the start, setting up included", ha="center", fontsize=8)
+    figure.text(
+        0.5, 0.02, f"the least d is drawn at {_FLOOR:g}; processor time since the start, setting up included", ha="center", fontsize=8
+    )
     atomic_write(path, png(figure))
 
 
@@ -83,7 +85,7 @@ def _panels(count: int, title: str) -> tuple[Figure, list[Axes]]:
     figure.suptitle(title)
     panels = list(figure.subplots(1, count, squeeze=False, sharey=True)[0])
     for axes in panels:
-        axes.set(xscale="log", yscale="log", xlabel="time, s")
+        axes.set(xscale="log", yscale="log", xlabel="processor time, s")
         axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
         axes.xaxis.set_major_formatter("{x:g}")
         axes.xaxis.set_minor_formatter(NullFormatter())

@@ -1,4 +1,4 @@
-"""d after every iteration of the project's Newton method and of libigl's SLIM, from the same BFF start."""
+"""d after every step of the project's refinement and after every iteration of libigl's SLIM, from the same BFF start."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from skinfab.bench.contestants import Slim
 from skinfab.bench.timing import ENOUGH_S
 from skinfab.flatten.bff import flatten_scaled
+from skinfab.flatten.disk import lower
 from skinfab.flatten.distortion import distortion_of, shaped_areas, singular_values
-from skinfab.flatten.isometric import IsometricSolver
 from skinfab.progress import Progress, silent
 
 FloatArray = NDArray[np.float64]
@@ -29,7 +29,7 @@ _THERE = 1.001
 
 @dataclass(frozen=True)
 class Step:
-    """Where a method is after an iteration: seconds since the common start (setting up included), and the mean d.
+    """Where a method is after a step: processor seconds since the common start (setting up included), and the mean d.
 
     Parameters
     ----------
@@ -77,33 +77,36 @@ def follow(disks: Sequence[tuple[FloatArray, IntArray]], *, repeats: int = 3, pr
     return steps
 
 
-def _steps(method: str, V: FloatArray, F: IntArray, start: FloatArray, walk: Iterator[FloatArray], aim: float) -> list[Step]:
-    """Follow a walk until it ends, or is at `aim`; judging it is outside the time."""
+def _steps(method: str, V: FloatArray, F: IntArray, start: FloatArray, walk: Iterator[tuple[float, FloatArray]], aim: float) -> list[Step]:
+    """Follow a walk until it ends, gains nothing, or is at `aim`; judging it is outside the time."""
     found = [Step(method, len(F), 0, 0.0, _mean_d(V, F, start))]
-    seconds = 0.0
-    while len(found) <= MOST_STEPS and found[-1].mean_d > aim:
-        began = time.perf_counter()
-        uv = next(walk, None)
-        seconds += time.perf_counter() - began
-        if uv is None:
-            break
+    for seconds, uv in walk:
         found.append(Step(method, len(F), len(found), seconds, _mean_d(V, F, uv)))
+        if found[-1].mean_d <= aim or len(found) > MOST_STEPS:
+            break
     return found
 
 
-def _newton(V: FloatArray, F: IntArray, start: FloatArray) -> Iterator[FloatArray]:
-    solver, uv, converged = IsometricSolver(V, F), start, False
-    while not converged:
-        refined = solver.refine(uv, max_steps=1)
-        uv, converged = refined.UV, refined.converged
-        if len(refined.energy) > 1:
-            yield uv
+def _newton(V: FloatArray, F: IntArray, start: FloatArray) -> Iterator[tuple[float, FloatArray]]:
+    """Anew from the start each time, told to end a step later: so every point is what a whole call takes."""
+    for most in range(1, MOST_STEPS + 1):
+        began = time.process_time()
+        refined = lower(V, F, start, max_steps=most)
+        seconds = time.process_time() - began
+        if len(refined.energy) <= most:
+            return
+        yield seconds, refined.UV
 
 
-def _slim(V: FloatArray, F: IntArray, start: FloatArray) -> Iterator[FloatArray]:
+def _slim(V: FloatArray, F: IntArray, start: FloatArray) -> Iterator[tuple[float, FloatArray]]:
+    began = time.process_time()
     slim = Slim(V, F, start)
+    seconds = time.process_time() - began
     while True:
-        yield slim.step()
+        began = time.process_time()
+        uv = slim.step()
+        seconds += time.process_time() - began
+        yield seconds, uv
 
 
 def _mean_d(V: FloatArray, F: IntArray, uv: FloatArray) -> float:

@@ -77,7 +77,7 @@ def sentence(table: Table, refinement: Table) -> str:
     newton_s, slim_s, there = reached(refinement, size)
     parts = [
         f"The default is {DEFAULT}: at {size} triangles it reaches a mean d of {default['mean_d']:.5f} (least of all usable results: "
-        f"{least:.5f}) in {default['seconds']:.3g} s, {_beside_the_quicker(usable, default)}",
+        f"{least:.5f}) in {default['seconds']:.3g} s of processor time, {_beside_the_quicker(usable, default)}",
         f"slim takes {slim['seconds']:.3g} s to {slim['mean_d']:.5f}, so the ratio of times is {default['seconds'] / slim['seconds']:.2f}",
         f"from the same BFF start, until d - 4 is within {SAME_D - 1:.1%} of the least, it is {newton_s / slim_s:.2f}"
         + ("" if there else " at most, as SLIM did not get there"),

@@ -20,7 +20,7 @@ PRESENT = [c for c in contestants() if c.present]
 
 @pytest.mark.parametrize("c", PRESENT, ids=lambda c: c.name)
 def test_everybody_lays_the_disk_flat(c: Contestant) -> None:
-    row = judge(c, V, F, c.prepare(V, F)(), 1.0, 1.0, 1)
+    row = judge(c, V, F, c.prepare(V, F)(), 1.0, 1.0, 1.0, 1)
     assert row.triangles == len(F) and row.flipped == 0 and 4 <= row.mean_d < 4.5
     assert row.overlap_mm2 == pytest.approx(0, abs=1e-6)
     assert row.usable == (row.pieces == 1)
@@ -29,7 +29,7 @@ def test_everybody_lays_the_disk_flat(c: Contestant) -> None:
 def test_results_are_judged_right_side_up_and_at_their_best_scale() -> None:
     uv = flatten_scaled(V, F)
     same = np.arange(len(V))
-    plain, mirrored = (judge(PRESENT[0], V, F, Flat(F, uv * by, same), 1.0, 1.0, 1) for by in ([1.0, 1.0], [-0.01, 0.01]))
+    plain, mirrored = (judge(PRESENT[0], V, F, Flat(F, uv * by, same), 1.0, 1.0, 1.0, 1) for by in ([1.0, 1.0], [-0.01, 0.01]))
     assert mirrored.mean_d == pytest.approx(plain.mean_d, rel=1e-12) and mirrored.usable
 
 
@@ -37,7 +37,7 @@ def test_flips_and_overlap_are_not_usable() -> None:
     uv = flatten_scaled(V, F)
     inner = int(np.argmin(np.linalg.norm(V[:, :2], axis=1)))
     uv[inner] += [200, 0]
-    row = judge(PRESENT[0], V, F, Flat(F, uv, np.arange(len(V))), 1.0, 1.0, 1)
+    row = judge(PRESENT[0], V, F, Flat(F, uv, np.arange(len(V))), 1.0, 1.0, 1.0, 1)
     assert row.flipped > 0 and not row.usable
 
 
@@ -51,11 +51,11 @@ def test_the_methods_take_turns_and_the_least_time_counts(monkeypatch: pytest.Mo
 
         return Contestant(name, "ours", lambda V, F: work)
 
-    seconds = iter([3.0, 20.0, 1.0, 2.0])
-    monkeypatch.setattr("skinfab.bench.flatten.timed", lambda work: (work(), next(seconds), 5.0))
+    seconds = iter([(3.0, 3.5), (6.0, 20.0), (1.0, 4.0), (2.0, 2.0)])
+    monkeypatch.setattr("skinfab.bench.flatten.timed_twice", lambda work: (work(), *next(seconds), 5.0))
     rows = measure_methods([contestant("a"), contestant("b")], [(V, F)], repeats=3)
     assert calls == ["a", "b", "a", "a"]  # b has used its time
-    assert [(r.method, r.seconds, r.repeats) for r in rows] == [("a", 1.0, 3), ("b", 20.0, 1)]
+    assert [(r.method, r.seconds, r.wall_s, r.repeats) for r in rows] == [("a", 1.0, 2.0, 3), ("b", 6.0, 20.0, 1)]
 
 
 def test_refinement_steps_are_those_of_the_default() -> None:
@@ -66,7 +66,7 @@ def test_refinement_steps_are_those_of_the_default() -> None:
     assert [s.step for s in newton] == list(range(len(newton)))
     assert all(a.mean_d > b.mean_d for a, b in itertools.pairwise(newton)) and len(slim) <= MOST_STEPS + 1
     whole = next(c for c in PRESENT if c.name == table_of.DEFAULT)
-    assert newton[-1].mean_d == pytest.approx(judge(whole, V, F, whole.prepare(V, F)(), 1.0, 1.0, 1).mean_d, abs=1e-6)
+    assert newton[-1].mean_d == pytest.approx(judge(whole, V, F, whole.prepare(V, F)(), 1.0, 1.0, 1.0, 1).mean_d, abs=1e-6)
 
 
 def test_run_writes_tables_charts_and_a_sentence_from_the_tables(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -77,7 +77,7 @@ def test_run_writes_tables_charts_and_a_sentence_from_the_tables(tmp_path: Path,
     found = run(tmp_path, sizes=[300, 600], repeats=1, progress=lambda fraction, label: seen.append(fraction))
     assert sorted(p.name for p in tmp_path.iterdir()) == ["flatten.csv", "flatten.png", "flatten.txt", "refine.csv", "refine.png"]
     header = (tmp_path / "flatten.csv").read_text().splitlines()[0]
-    assert header.startswith("method,kind,triangles,seconds,mean_d,max_d,flipped,overlap_mm2,")
+    assert header.startswith("method,kind,triangles,seconds,wall_s,mean_d,max_d,flipped,overlap_mm2,")
     rows, refinement = read_csv(tmp_path / "flatten.csv"), read_csv(tmp_path / "refine.csv")
     assert [(r["method"], r["triangles"]) for r in rows] == [(c.name, n) for n in (294, 600) for c in few]
     text = (tmp_path / "flatten.txt").read_text()

@@ -1,10 +1,11 @@
 import os
 import sys
+import time
 
 import numpy as np
 import pytest
 
-from skinfab.bench.timing import one_processor, timed
+from skinfab.bench.timing import one_processor, timed, timed_twice
 
 
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="the kernel's high-water mark is read from /proc")
@@ -28,3 +29,8 @@ def test_one_processor_inside_and_all_of_them_after_also_after_a_fault() -> None
         fail()
     assert inside == [(True, 1)]
     assert os.sched_getaffinity(0) == before
+
+
+def test_waiting_is_on_the_wall_but_not_the_processes_own_time() -> None:
+    result, own_s, wall_s, _ = timed_twice(lambda: time.sleep(0.2))
+    assert result is None and own_s < 0.1 < 0.2 <= wall_s + 1e-3
