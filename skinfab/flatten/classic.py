@@ -5,7 +5,7 @@ libigl trusts its input (a closed mesh ends the process), so a disk, with holes 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 import igl
@@ -15,8 +15,10 @@ from numpy.typing import NDArray
 from skinfab.errors import RefusedError
 from skinfab.flatten.distortion import best_scale, singular_values
 from skinfab.flatten.holes import border_of, fill_holes
+from skinfab.flatten.overlap import overlap_area
 from skinfab.flatten.tutte import tutte_embedding
 from skinfab.mesh.topology import Topology
+from skinfab.tolerances import OVERLAP_FRACTION
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -47,21 +49,44 @@ def harmonic(V: FloatArray, F: IntArray, *, topology: Topology | None = None) ->
 
 
 def arap(V: FloatArray, F: IntArray, *, topology: Topology | None = None) -> FloatArray:
-    """As rigid as possible (Liu et al. 2008), from Tutte's embedding with holes filled; (n, 2) mm."""
-    start, border = _embedded(V, F, topology)
-    data = igl.ARAPData()
-    data.max_iter = _ITERATIONS
-    # Nothing held, the system is singular, and rounding decides whether it factors.
-    held = border[:1].astype(np.int32)
-    igl.arap_precomputation(V, F, 2, held, data)
-    return _finished(V, F, igl.arap_solve(start[held], data, start), "arap")
+    """As rigid as possible (Liu et al. 2008), from Tutte's embedding; (n, 2) mm."""
+    return _from_tutte(V, F, _arap, topology or Topology(F), "arap")
 
 
 def slim(V: FloatArray, F: IntArray, *, topology: Topology | None = None) -> FloatArray:
-    """Scalable locally injective maps (Rabinovich et al. 2017) of least d, from Tutte's embedding with holes filled; (n, 2) mm."""
-    # SLIM never returns from a start with a flip; Tutte's has none.
-    start, _ = _embedded(V, F, topology)
-    # ... and it has a tolerance with a unit: at a millionth of the size another map comes out.
+    """Scalable locally injective maps (Rabinovich et al. 2017) on the energy d itself, from Tutte's embedding; (n, 2) mm."""
+    return _from_tutte(V, F, _slim, topology or Topology(F), "slim")
+
+
+def _from_tutte(
+    V: FloatArray, F: IntArray, lower: Callable[[FloatArray, IntArray, FloatArray], FloatArray], topology: Topology, method: str
+) -> FloatArray:
+    """Tutte's embedding of the filled surface, made better with the holes free, or filled where a rim would cover itself."""
+    W, G = fill_holes(V, F, topology=topology)
+    start = tutte_embedding(W, G, topology=topology if G is F else None)
+    free = _finished(V, F, lower(V, F, start[: len(V)]), method)
+    if G is F:
+        return free
+    twice = overlap_area(F, free, topology=topology)
+    if twice <= OVERLAP_FRACTION * float(np.prod(np.ptp(free, axis=0))):
+        return free
+    filled = _finished(V, F, lower(W, G, start)[: len(V)], method)
+    return filled if overlap_area(F, filled, topology=topology) < twice else free
+
+
+def _arap(V: FloatArray, F: IntArray, start: FloatArray) -> FloatArray:
+    data = igl.ARAPData()
+    data.max_iter = _ITERATIONS
+    # Nothing held, the system is singular, and rounding decides whether it factors.
+    held = np.zeros(1, dtype=np.int32)
+    igl.arap_precomputation(V, F, 2, held, data)
+    laid: FloatArray = igl.arap_solve(start[held], data, np.ascontiguousarray(start))
+    return laid
+
+
+def _slim(V: FloatArray, F: IntArray, start: FloatArray) -> FloatArray:
+    # SLIM never returns from a start with a flip (Tutte's has none), and has a tolerance with a unit: at a millionth
+    # of the size another map comes out.
     size = float(np.linalg.norm(np.ptp(V, axis=0)))
     data = igl.slim_precompute(
         np.asfortranarray(V / size),
@@ -72,14 +97,7 @@ def slim(V: FloatArray, F: IntArray, *, topology: Topology | None = None) -> Flo
         np.zeros((0, 2), order="F"),
         0.0,
     )
-    return _finished(V, F, np.asarray(igl.slim_solve(data, _ITERATIONS))[:, :2], "slim")
-
-
-def _embedded(V: FloatArray, F: IntArray, topology: Topology | None) -> tuple[FloatArray, IntArray]:
-    """Tutte's embedding with the holes filled, (n, 2) mm, and the border."""
-    W, G = fill_holes(V, F, topology=topology)
-    filled = Topology(G)
-    return tutte_embedding(W, G, topology=filled)[: len(V)], filled.boundary_loops[0]
+    return np.asarray(igl.slim_solve(data, _ITERATIONS))[:, :2]
 
 
 @contextmanager

@@ -80,3 +80,19 @@ def test_a_failure_of_libigls_own_is_a_refusal(method, monkeypatch: pytest.Monke
     monkeypatch.setattr(classic.igl, method.__name__, fails)
     with pytest.raises(RefusedError, match=rf"{method.__name__} found no map of this mesh \(igl failed\); use --method auto"):
         method(*shapes.wavy())
+
+
+def purse_with_holes() -> tuple[np.ndarray, np.ndarray]:
+    """Nine tenths of a sphere with a hole in its side, near the opening."""
+    V, F = shapes.cap(12, 2.6)
+    F = F[np.linalg.norm(V[F].mean(axis=1) - [np.sin(1.95), 0, np.cos(1.95)], axis=1) > 0.5]
+    used, local = np.unique(F, return_inverse=True)
+    return V[used], local.reshape(-1, 3)
+
+
+def test_holes_whose_rims_would_cover_themselves_stay_filled(monkeypatch: pytest.MonkeyPatch) -> None:
+    V, F = purse_with_holes()
+    figures = measure(V, F, slim(V, F))
+    assert figures.flipped == 0 and figures.overlap_mm2 == 0
+    monkeypatch.setattr(classic, "overlap_area", lambda *_, **__: 0.0)
+    assert measure(V, F, slim(V, F)).overlap_mm2 > 0.01
