@@ -113,26 +113,30 @@ def _guarded(work: Callable[[], int], interrupts: Sequence[int]) -> int:
         return status
     except SystemExit as stop:  # argparse, after its own message
         return stop.code if isinstance(stop.code, int) else 0 if stop.code is None else 1
-    except BrokenPipeError:
+    except BaseException as fault:
+        # An interrupt that a library turned into an error of its own is one all the same.
+        if interrupts or isinstance(fault, KeyboardInterrupt):
+            return _complain("interrupted; nothing half-written was left", INTERRUPTED)
+        return _explain(fault)
+
+
+def _explain(fault: BaseException) -> int:
+    """Say what went wrong in one line; the exit status that goes with it."""
+    if isinstance(fault, BrokenPipeError):
         _drop_output()
         return BROKEN_PIPE
-    except KeyboardInterrupt:
-        return _complain("interrupted; nothing half-written was left", INTERRUPTED)
-    except SkinfabError as fault:
+    if isinstance(fault, SkinfabError):
         return _complain(str(fault), fault.exit_status)
-    except MemoryError:
+    if isinstance(fault, MemoryError):
         return _complain("not enough memory for this; close other programs, or give a mesh with fewer faces", 1)
-    except OSError as fault:
+    if isinstance(fault, OSError):
         where = f"{fault.filename}: " if fault.filename is not None else ""
         if fault.filename is None:
             _drop_output()  # most likely standard output itself
         return _complain(f"{where}{fault.strerror or fault}", 1)
-    except Exception as fault:
-        if interrupts:  # a library turned the interrupt into an error of its own
-            return _complain("interrupted; nothing half-written was left", INTERRUPTED)
-        return _complain(
-            f"unexpected {type(fault).__name__}: {fault}; SKINFAB_TRACEBACK=1 shows where (a fault of skinfab: please report it)", 1
-        )
+    return _complain(
+        f"unexpected {type(fault).__name__}: {fault}; SKINFAB_TRACEBACK=1 shows where (a fault of skinfab: please report it)", 1
+    )
 
 
 def _complain(message: str, status: int) -> int:
@@ -162,6 +166,14 @@ def _quiet_warnings() -> Iterator[None]:
         yield
 
 
+def _on_its_way_out() -> bool:
+    """An interrupt is being handled: what is cleaned up on account of it, or said of it, must not be cut short by the next."""
+    fault = sys.exception()
+    while fault is not None and not isinstance(fault, KeyboardInterrupt):
+        fault = fault.__context__
+    return fault is not None
+
+
 @contextmanager
 def _termination_as_interrupt() -> Iterator[list[int]]:
     """Let SIGTERM and SIGHUP unwind like Ctrl-C, so that temporary files go, and see that each gets through."""
@@ -172,7 +184,8 @@ def _termination_as_interrupt() -> Iterator[list[int]]:
         # An interrupt inside a library's callback can be swallowed there: it comes again until it gets through.
         seen.append(signum)
         signal.setitimer(signal.ITIMER_REAL, AGAIN_S)
-        raise KeyboardInterrupt
+        if not _on_its_way_out():
+            raise KeyboardInterrupt
 
     # Whatever was set to be ignored (nohup), or is handled by a host program, stays so.
     ours = {signal.SIGINT: signal.default_int_handler, **dict.fromkeys((signal.SIGTERM, signal.SIGHUP, signal.SIGALRM), signal.SIG_DFL)}

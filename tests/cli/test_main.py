@@ -196,3 +196,32 @@ def test_a_swallowed_interrupt_comes_again() -> None:
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=20)
     assert done.stdout == "swallowed\n"
     assert done.returncode == 130 and done.stderr.splitlines()[-1].startswith("skinfab: interrupted")
+
+
+@pytest.mark.parametrize(
+    "fault", ["InputError('half a file')", "OSError(5, 'broken', 'x')", "MemoryError", "ValueError('?')", "SystemError"]
+)
+def test_an_interrupt_turned_into_another_error_is_one_all_the_same(fault: str) -> None:
+    body = ("try:", "    os.kill(os.getpid(), 2)", "    time.sleep(5)", "except KeyboardInterrupt:", f"    raise {fault}")
+    done = run_body("\n    ".join(body))
+    assert (done.returncode, done.stderr) == (130, "skinfab: interrupted; nothing half-written was left\n")
+
+
+@pytest.mark.parametrize("way_out", ["finally", "except KeyboardInterrupt", "except BaseException"])
+def test_cleaning_up_is_not_cut_short_by_a_second_interrupt(way_out: str) -> None:
+    """The first interrupt is repeated in case it was swallowed: not so while it is being handled, however long that takes."""
+    body = (
+        "frame.AGAIN_S = 0.05",
+        "try:",
+        "    os.kill(os.getpid(), 2)",
+        "    time.sleep(5)",
+        f"{way_out}:",
+        "    time.sleep(0.3)",
+        "    os.kill(os.getpid(), 15)",
+        "    time.sleep(0.3)",
+        "    print('cleaned', flush=True)",
+        *(["    raise"] if way_out != "finally" else []),
+    )
+    done = run_body("\n    ".join(body))
+    assert (done.returncode, done.stdout) == (130, "cleaned\n")
+    assert done.stderr == "skinfab: interrupted; nothing half-written was left\n"

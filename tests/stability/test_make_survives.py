@@ -63,7 +63,7 @@ def test_interrupted(after_s: float, number: int, tmp_path: Path) -> None:
         results.read_report(out)
         return
     # Before Python has set its handlers the system ends the process itself.
-    assert job.returncode in (130, -number)
+    assert job.returncode in (130, -number), error
     assert "Traceback" not in error
     assert left_in(out) == []
 
