@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import time
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -141,7 +142,11 @@ def _method(args: argparse.Namespace, simplified: list[Simplified]) -> Flatten:
     from skinfab.flatten.methods import method
 
     if args.simplify == "off":
-        return method("isometric" if args.method == "auto" else args.method)
+        if args.method not in ("auto", "isometric"):
+            return method(args.method)
+        from skinfab.flatten.holes import flatten_least
+
+        return partial(flatten_least, say=lambda sentence: steps.say([sentence]))
     from skinfab.flatten.simplified import flatten_simplified
 
     def flatten(V: NDArray[np.float64], F: NDArray[np.int64], *, topology: Topology | None = None) -> NDArray[np.float64]:

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 
 from skinfab.flatten.bff import flatten_disk
 from skinfab.flatten.isometric import MOST_STEPS, IsometricSolver, Refinement
 from skinfab.flatten.rigid_start import rigid_steps
+from skinfab.flatten.robust import turned_over
 from skinfab.flatten.tutte import tutte_embedding
 from skinfab.mesh.topology import Topology
 from skinfab.tolerances import FLAT_START, NEWTON_DECREASE
 
 FloatArray = NDArray[np.float64]
+Say = Callable[[str], object]
 
 #: From BFF's layout two steps come as near to the least d as two or three of Newton's, at a quarter of the cost.
 _RIGID_STEPS = 2
@@ -28,6 +32,7 @@ def flatten_isometric(
     topology: Topology | None = None,
     tolerance: float = NEWTON_DECREASE,
     hopeless_above: float = np.inf,
+    say: Say | None = None,
 ) -> FloatArray:
     """BFF, scaled for the least d, untangled where it flipped, brought near by rigid steps, refined by Newton steps.
 
@@ -39,6 +44,8 @@ def flatten_isometric(
     topology : Topology, optional
     tolerance, hopeless_above : float
         When to stop, see `IsometricSolver.refine`.
+    say : function, optional
+        Is told in one sentence where BFF's layout had to be untangled.
 
     Returns
     -------
@@ -52,7 +59,7 @@ def flatten_isometric(
     """
     topology = topology or Topology(F)
     uv = flatten_disk(V, F, topology=topology)
-    return lower(V, F, uv, topology=topology, tolerance=tolerance, hopeless_above=hopeless_above).UV
+    return lower(V, F, uv, topology=topology, tolerance=tolerance, hopeless_above=hopeless_above, say=say).UV
 
 
 def lower(
@@ -64,6 +71,7 @@ def lower(
     max_steps: int = MOST_STEPS,
     tolerance: float = NEWTON_DECREASE,
     hopeless_above: float = np.inf,
+    say: Say | None = None,
 ) -> Refinement:
     """What `flatten_isometric` makes of BFF's layout `UV`, (n, 2) at any scale.
 
@@ -72,6 +80,10 @@ def lower(
     solver = IsometricSolver(V, F)
     uv, is_open = _scaled(solver, UV)
     if not is_open:
+        if say is not None:
+            flips = turned_over(UV, F)
+            fault = f"turned {flips} of {len(F)} triangles over" if flips else "squashed a triangle flat"
+            say(f"boundary first flattening {fault}, so the layout was begun anew from Tutte's embedding, which turns none")
         # A nearly collapsed triangle stalls the line search as surely as a flipped one.
         uv, _ = _scaled(solver, tutte_embedding(V, F, topology=topology))
     # Where a rough answer will do, Newton's first steps give it by themselves.

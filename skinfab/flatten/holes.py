@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -185,7 +187,9 @@ def flatten_filled(V: FloatArray, F: IntArray, *, topology: Topology | None = No
     return uv * best_scale(V, F, uv)
 
 
-def flatten_least(V: FloatArray, F: IntArray, *, topology: Topology | None = None) -> FloatArray:
+def flatten_least(
+    V: FloatArray, F: IntArray, *, topology: Topology | None = None, say: Callable[[str], object] | None = None
+) -> FloatArray:
     """The least mean d of a surface with or without holes: `flatten_isometric`, then the holes left to themselves.
 
     Where a hole's rim would come to lie on itself or on another, the layout with filled holes is kept.
@@ -197,6 +201,8 @@ def flatten_least(V: FloatArray, F: IntArray, *, topology: Topology | None = Non
         One component of genus 0 with a boundary; every vertex in use.
     topology : Topology, optional
         Of `F`, where it is at hand.
+    say : function, optional
+        Is told in one sentence where BFF's layout had to be untangled.
 
     Returns
     -------
@@ -215,14 +221,14 @@ def flatten_least(V: FloatArray, F: IntArray, *, topology: Topology | None = Non
     topology = topology or Topology(F)
     W, G = fill_holes(V, F, topology=topology)
     if G is F:
-        return flatten_isometric(V, F, topology=topology)
+        return flatten_isometric(V, F, topology=topology, say=say)
     start = flatten_robust(W, G, counted=len(F))[: len(V)]
     s = singular_values(V, F, start)
     if np.isfinite(s).all() and s[:, 1].min() >= FLAT_START * s[:, 0].max():
         freed = lower(V, F, start, topology=topology).UV
         if overlap_area(F, freed, topology=topology) <= _nothing(freed):
             return freed
-    filled = flatten_isometric(W, G)[: len(V)]
+    filled = flatten_isometric(W, G, say=say)[: len(V)]
     filled = filled * best_scale(V, F, filled)
     freed = IsometricSolver(V, F).refine(filled).UV
     if overlap_area(F, freed, topology=topology) <= overlap_area(F, filled, topology=topology) + _nothing(freed):

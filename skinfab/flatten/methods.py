@@ -20,8 +20,6 @@ from skinfab.mesh.topology import Topology
 class Flatten(Protocol):
     """What every method looks like."""
 
-    __name__: str
-
     def __call__(self, V: NDArray[np.float64], F: NDArray[np.int64], *, topology: Topology | None = None) -> NDArray[np.float64]: ...
 
 

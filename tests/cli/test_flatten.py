@@ -167,3 +167,12 @@ def test_simplify_goes_with_what_minimises_d(method: str, tmp_path: Path, capsys
     assert (
         f"--simplify auto goes with --method auto or isometric, whose aim is the least d; {method} has another" in capsys.readouterr().err
     )
+
+
+@pytest.mark.parametrize("method", ["auto", "isometric"])
+def test_untangling_is_said(method: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    V, F = shapes.random_disk(0, 100, 0.3)
+    command = ["flatten", written(tmp_path, V * 30, F), "-o", str(tmp_path / "flat.obj"), "--units", "mm", "--max-distortion", "100"]
+    assert main([*command, "--method", method]) == 0
+    notes = [line for line in capsys.readouterr().err.splitlines() if "begun anew" in line]
+    assert len(notes) == 1 and notes[0].startswith("note: boundary first flattening turned")

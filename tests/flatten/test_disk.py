@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from skinfab.flatten.bff import flatten_disk
-from skinfab.flatten.disk import flatten_isometric
+from skinfab.flatten.disk import flatten_isometric, lower
 from skinfab.flatten.distortion import best_scale, measure, singular_values
 
 
@@ -55,3 +55,20 @@ def test_the_smallest_disks() -> None:
         used, G = np.unique(faces, return_inverse=True)
         uv = flatten_isometric(V[used], G.reshape(-1, 3))
         np.testing.assert_allclose(singular_values(V[used], G.reshape(-1, 3), uv), 1, atol=1e-6)
+
+
+def test_untangling_is_told() -> None:
+    told: list[str] = []
+    V, F = shapes.random_disk(0, 100, 0.3)
+    assert (singular_values(V, F, flatten_disk(V, F))[:, 1] <= 0).any()
+    assert (singular_values(V, F, flatten_isometric(V, F, say=told.append)) > 0).all()
+    assert len(told) == 1 and f"of {len(F)} triangles over" in told[0]
+    flatten_isometric(*shapes.wavy(), say=told.append)
+    assert len(told) == 1
+
+
+def test_a_triangle_without_width_is_untangled_too() -> None:
+    told: list[str] = []
+    V, F = shapes.random_disk(0, 100, 0.3)
+    lower(V, F, V[:, :2] * [1.0, 1e-14], say=told.append)
+    assert "begun anew" in told[0]

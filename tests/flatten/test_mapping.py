@@ -1,6 +1,5 @@
 """Both ways between object and flat piece: the same point to 1e-9 mm, whole crowds of them in a moment."""
 
-
 import numpy as np
 import pytest
 import shapes
