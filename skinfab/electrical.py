@@ -49,7 +49,7 @@ def ink_volume(length: float, ink: Ink) -> float:
 def resistance(length: float, ink: Ink) -> Resistance:
     """Resistance of a printed line of `length` mm between its two terminals.
 
-    The median is rho L / A + 2 R_contact; ln R scatters with the ink's `log_sigma`.
+    The median is rho L / A + 2 R_contact, with A what conducts (`Ink.conducting_area_mm2`); ln R scatters with the ink's `log_sigma`.
 
     Raises
     ------
@@ -67,7 +67,7 @@ def resistance(length: float, ink: Ink) -> Resistance:
         raise InputError(f"a conductor of length {length:g} mm has no resistance; it must be longer than 0")
     if not ink.bead_area_mm2 > 0:
         raise InputError(f"ink {ink.name}: bead_area_mm2 is {ink.bead_area_mm2:g}; it must be more than 0")
-    line = _KOHM_MM_PER_OHM_CM * ink.resistivity_ohm_cm * length / ink.bead_area_mm2
+    line = _KOHM_MM_PER_OHM_CM * ink.resistivity_ohm_cm * length / ink.conducting_area_mm2
     median = line + 2 * ink.contact_resistance_kohm
     spread = math.exp(_Z95 * ink.log_sigma)
     return Resistance(low=median / spread, median=median, high=median * spread)

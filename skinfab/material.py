@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from dataclasses import dataclass, fields
+from dataclasses import MISSING, dataclass, fields
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -21,6 +21,12 @@ class Ink:
     bead_width: float  # mm, as seen from above
     contact_resistance_kohm: float  # of one terminal
     log_sigma: float  # sd of ln(R): the scatter from print to print
+    effective_area_mm2: float = 0.0  # cross-section that conducts, as strips tell (skinfab.strip_fit); 0: all of the bead
+
+    @property
+    def conducting_area_mm2(self) -> float:
+        """The cross-section that a resistance is computed with, mm^2."""
+        return self.effective_area_mm2 or self.bead_area_mm2
 
 
 @dataclass(frozen=True)
@@ -43,6 +49,7 @@ class Mould:
     lip: float  # width of the adhesive lip along a seam
     mark: float  # length of a registration mark's arm
     wire_exit: float  # width of the slot a wire leaves by
+    draft_deg: float = 0.0  # by which the walls lean outwards, so that the cast comes out
 
 
 @dataclass(frozen=True)
@@ -104,14 +111,15 @@ def load_material(name: str | Path = "carbon-grease-ecoflex") -> Material:
 
 def _build(kind: type, data: dict[str, Any], where: str) -> Any:
     expected = {f.name: f.type for f in fields(kind)}
+    optional = {f.name for f in fields(kind) if f.default is not MISSING}
     if unknown := sorted(data.keys() - expected.keys()):
         raise InputError(f"{where}: unknown field {unknown[0]!r}; it knows {', '.join(sorted(expected))}")
-    if missing := sorted(expected.keys() - data.keys()):
+    if missing := sorted(expected.keys() - data.keys() - optional):
         raise InputError(f"{where}: field {missing[0]!r} is missing")
     values = dict(data)
     for key, annotation in expected.items():
-        if annotation == "float":
-            if isinstance(values[key], bool) or not isinstance(values[key], (int, float)) or not values[key] >= 0:
+        if annotation == "float" and key in values:
+            if isinstance(values[key], bool) or not isinstance(values[key], (int, float)) or not 0 <= values[key] < float("inf"):
                 raise InputError(f"{where}: {key} is {values[key]!r}; it must be a number, zero or more")
             values[key] = float(values[key])
     return kind(**values)

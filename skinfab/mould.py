@@ -16,6 +16,7 @@ from skinfab.files import atomic_write
 from skinfab.material import Material
 from skinfab.mesh.topology import Topology
 from skinfab.mould_plan import MouldPlan, mould_plan
+from skinfab.mould_taper import tapered
 from skinfab.pieces import Piece
 from skinfab.skin import Skin
 from skinfab.tolerances import CAVITY_FRACTION
@@ -92,7 +93,8 @@ def casting_mould(
 ) -> CastingMould:
     """The mould of one flat piece: floor plate, wall, registration marks, wire slots, adhesive lips.
 
-    The wall fills the darts. Its top is `FREEBOARD_MM` above the silicone, and the slots for the wires end
+    The wall fills the darts, and leans outwards by the material's draft about the piece's outline at half the
+    silicone's depth. Its top is `FREEBOARD_MM` above the silicone, and the slots for the wires end
     at the silicone's surface, so that nothing runs out. A lip is as thick as the top layer and as wide as the
     material says: it is glued over the other side of its seam.
 
@@ -126,7 +128,7 @@ def casting_mould(
     depth = material.depth if depth is None else depth
     if not (np.isfinite(depth) and depth > 0):
         raise InputError(f"the silicone's depth is {depth:g} mm; it must be positive")
-    plan = mould_plan(piece, mould=material.mould, pads=pads, lips=lips)
+    plan = mould_plan(piece, mould=material.mould, depth=depth, freeboard=FREEBOARD_MM, pads=pads, lips=lips)
     floor_z = material.mould.floor
     fill_z, top_z = floor_z + depth, floor_z + depth + FREEBOARD_MM
     lip_depth = min(material.layers[-1].depth, depth) if material.layers else depth
@@ -191,12 +193,20 @@ def _solid(plan: MouldPlan, floor_z: float, fill_z: float, top_z: float, lip_dep
     """The mould as a manifold3d solid."""
     above = top_z - fill_z  # cuts reach this far past the top, so that no two faces coincide
     plate = _prism(plan.plate, 0.0, floor_z) - _prism(plan.grooves, floor_z / 2, floor_z + above)
-    wall = _prism(plan.wall, floor_z / 2, top_z)
+    wall = _wall(plan, floor_z, top_z, above)
     if not plan.slots.is_empty:
         wall -= _prism(plan.slots, fill_z, top_z + above)
     if not plan.lip.is_empty:
         wall -= _prism(plan.lip_cut, fill_z - lip_depth, top_z + above)
     return plate + wall
+
+
+def _wall(plan: MouldPlan, floor_z: float, top_z: float, above: float) -> Any:
+    """The wall, rooted in the plate; with a draft, the cavity is cut from it as a body that widens upwards."""
+    if plan.top is plan.bottom:
+        return _prism(plan.wall, floor_z / 2, top_z)
+    cavity = tapered(plan.bottom, plan.top, z=(floor_z / 4, floor_z, top_z, top_z + above))
+    return _prism(plan.wall | plan.cavity, floor_z / 2, top_z) - cavity
 
 
 def _prism(region: Any, low: float, high: float) -> Any:

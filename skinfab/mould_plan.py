@@ -6,6 +6,7 @@ coarse enough for the single precision of an STL file.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -29,7 +30,9 @@ class MouldPlan:
     Parameters
     ----------
     cavity : MultiPolygon
-        Where silicone is cast: the piece.
+        Where silicone is cast: the piece, and the cavity's section at half the silicone's depth.
+    bottom, top : MultiPolygon
+        The cavity's section at its floor and at the wall's top: with a draft, narrower and wider than the piece.
     lip : MultiPolygon
         Strips beside the cavity that only the top layer flows into.
     lip_cut : MultiPolygon
@@ -53,6 +56,8 @@ class MouldPlan:
     """
 
     cavity: MultiPolygon
+    bottom: MultiPolygon
+    top: MultiPolygon
     lip: MultiPolygon
     lip_cut: MultiPolygon
     wall: MultiPolygon
@@ -65,14 +70,27 @@ class MouldPlan:
     warnings: tuple[str, ...]
 
 
-def mould_plan(piece: Piece, *, mould: Mould, pads: Sequence[WirePad] = (), lips: Sequence[NDArray[np.float64]] = ()) -> MouldPlan:
+def mould_plan(
+    piece: Piece,
+    *,
+    mould: Mould,
+    depth: float,
+    freeboard: float = 0.0,
+    pads: Sequence[WirePad] = (),
+    lips: Sequence[NDArray[np.float64]] = (),
+) -> MouldPlan:
     """Plan a piece's mould.
+
+    Walls with a draft lean about the piece's outline at half the silicone's depth: what the cast gains above
+    it loses below, so that its volume stays the piece's area times its depth.
 
     Parameters
     ----------
     piece : Piece
     mould : Mould
         Its dimensions, from the material profile.
+    depth, freeboard : float, mm
+        Of the silicone, and how far the wall stands above it.
     pads : sequence of WirePad
         The contact pads on this piece; each gets a slot for its wire, see `skinfab.wire_exits.plan_exits`.
     lips : sequence of (k, 2) float, mm
@@ -97,11 +115,15 @@ def mould_plan(piece: Piece, *, mould: Mould, pads: Sequence[WirePad] = (), lips
     cavity = cavity_region(piece)
     if cavity.is_empty:
         raise InputError(f"piece {piece.id} has no area to cast; flatten it again")
+    below, brim_at, top_at = _leans(mould, depth, freeboard)
+    bottom, brim, top = (_on_grid(cavity.buffer(by, join_style="mitre")) if by else cavity for by in (below, brim_at, top_at))
+    if bottom.is_empty:
+        raise InputError(f"piece {piece.id} is too narrow for walls with mould.draft_deg = {mould.draft_deg:g}; lower it in the profile")
     slots, notes = plan_exits(pads, piece=piece.id, cavity=cavity, outer=_outer(cavity, mould), mould=mould) if len(pads) else ([], ())
     # Either side of a slot a wall stays towards the lip; the way out is free as far as a lip of this seam reaches.
     ways_out = shapely.union_all([slot_region(s, mould.wire_exit + 2 * mould.wall, longer=mould.lip + mould.wall) for s in slots])
-    lip = _lip_region(piece, cavity, lips, ways_out, mould)
-    lip_cut = _on_grid(lip.buffer(5 * MOULD_SLIT_MM, join_style="mitre"))
+    lip = _lip_region(piece, brim, lips, ways_out, mould)
+    lip_cut = _on_grid(lip.buffer(5 * MOULD_SLIT_MM + brim_at, join_style="mitre"))
     outer = _outer(cavity | lip, mould)
     through = [through_wall(slot, cavity=cavity, outer=outer) for slot in slots]
     blocked = tuple(
@@ -122,6 +144,8 @@ def mould_plan(piece: Piece, *, mould: Mould, pads: Sequence[WirePad] = (), lips
     grooves = [_l_mark(corner, inward, mould) for corner, inward in zip(marks, [(1, 1), (-1, 1), (1, -1)], strict=True)]
     return MouldPlan(
         cavity=cavity,
+        bottom=bottom,
+        top=top,
         lip=lip,
         lip_cut=lip_cut,
         wall=wall,
@@ -131,7 +155,12 @@ def mould_plan(piece: Piece, *, mould: Mould, pads: Sequence[WirePad] = (), lips
         grooves=_on_grid(shapely.union_all(grooves)),
         slots=_on_grid(shapely.union_all(cuts)),
         wire_slots=wire_slots,
-        warnings=(*notes, *blocked, *_narrow_places(piece, cavity, _on_grid(wall - lip_cut), mould), *_short_lips(piece, lip, lips)),
+        warnings=(
+            *notes,
+            *blocked,
+            *_narrow_places(piece, cavity, _on_grid(wall - lip_cut), mould),
+            *_short_lips(piece, lip.buffer(brim_at), lips),
+        ),
     )
 
 
@@ -152,6 +181,29 @@ def cavity_region(piece: Piece) -> MultiPolygon:
     return _on_grid(healed)
 
 
+def _leans(mould: Mould, depth: float, freeboard: float) -> tuple[float, float, float]:
+    """How far the cavity's wall stands outside the piece at its floor, at the silicone's surface and at its top, mm.
+
+    Raises
+    ------
+    InputError
+        The wall would be thinner than half of itself at its top.
+    """
+    if mould.draft_deg >= 90:
+        raise InputError(f"mould.draft_deg is {mould.draft_deg:g}; it counts from upright and must be below 90")
+    slope = math.tan(math.radians(mould.draft_deg))
+    if (depth + freeboard) * slope < MOULD_SLIT_MM:
+        return 0.0, 0.0, 0.0
+    top = (depth / 2 + freeboard) * slope
+    if top > mould.wall / 2:
+        most = math.floor(math.degrees(math.atan(mould.wall / (depth + 2 * freeboard))))
+        raise InputError(
+            f"mould.draft_deg is {mould.draft_deg:g}, which takes {top:.2f} mm off the top of a wall of {mould.wall:g} mm; "
+            f"lower it to {most:d} or make the wall thicker"
+        )
+    return -depth / 2 * slope, depth / 2 * slope, top
+
+
 def _outer(inside: BaseGeometry, mould: Mould) -> MultiPolygon:
     """What the walls round `inside` enclose."""
     # Gaps between two outer walls that are narrower than half a wall are filled: nothing cleans them.
@@ -161,9 +213,10 @@ def _outer(inside: BaseGeometry, mould: Mould) -> MultiPolygon:
 
 
 def _lip_region(
-    piece: Piece, cavity: MultiPolygon, lips: Sequence[NDArray[np.float64]], ways_out: BaseGeometry, mould: Mould
+    piece: Piece, brim: MultiPolygon, lips: Sequence[NDArray[np.float64]], ways_out: BaseGeometry, mould: Mould
 ) -> MultiPolygon:
-    """Strips of the lip's width outside the given runs, a wall away from every other edge and lip, broken by the wires' ways out."""
+    """Strips of the lip's width outside the given runs and the silicone's surface `brim`, a wall away from every other
+    edge and lip, broken by the wires' ways out."""
     boundary = shapely.LinearRing(piece.outline)
     strips: list[BaseGeometry] = []
     for points in lips:
@@ -172,18 +225,18 @@ def _lip_region(
         strip: BaseGeometry = run.buffer(-mould.lip, single_sided=True, join_style="mitre", mitre_limit=2)
         others = boundary - run.buffer(MOULD_SLIT_MM)
         # On one grid GEOS cannot lose its way: in floating point a thousand-edged outline made it give up.
-        strip = _on_grid(_on_grid(strip) - cavity - shapely.union_all([others, *strips]).buffer(mould.wall) - ways_out)
+        strip = _on_grid(_on_grid(strip) - brim - shapely.union_all([others, *strips]).buffer(mould.wall) - ways_out)
         # What is left between two darts may be a splinter that tears off with the skin: it goes. The chinks
         # that this leaves towards the cavity would be films of plastic: they are filled again.
         half = mould.wall / 2
         broad = strip.buffer(-half, join_style="mitre").buffer(half, join_style="mitre")
-        joined = (broad | cavity).buffer(half, join_style="mitre").buffer(-half, join_style="mitre")
-        parts = _on_grid(shapely.intersection(_on_grid(broad | (joined - cavity)), strip, grid_size=MOULD_GRID_MM)).geoms
-        strips.append(MultiPolygon([part for part in parts if (part & broad).area > half**2 and part.distance(cavity) < MOULD_SLIT_MM]))
-    return _on_grid(shapely.union_all(strips) - cavity)
+        joined = (broad | brim).buffer(half, join_style="mitre").buffer(-half, join_style="mitre")
+        parts = _on_grid(shapely.intersection(_on_grid(broad | (joined - brim)), strip, grid_size=MOULD_GRID_MM)).geoms
+        strips.append(MultiPolygon([part for part in parts if (part & broad).area > half**2 and part.distance(brim) < MOULD_SLIT_MM]))
+    return _on_grid(shapely.union_all(strips) - brim)
 
 
-def _short_lips(piece: Piece, lip: MultiPolygon, lips: Sequence[NDArray[np.float64]]) -> tuple[str, ...]:
+def _short_lips(piece: Piece, lip: BaseGeometry, lips: Sequence[NDArray[np.float64]]) -> tuple[str, ...]:
     """Says so where most of the wanted lip has no room."""
     runs = [shapely.LineString(points) for points in lips]
     wanted = sum(run.length for run in runs)

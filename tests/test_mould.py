@@ -16,10 +16,13 @@ from numpy.typing import NDArray
 from skinfab.errors import InputError, RefusedError
 from skinfab.material import load_material
 from skinfab.mould import FREEBOARD_MM, CastingMould, casting_mould, is_watertight, write_mould
+from skinfab.mould_plan import cavity_region
 from skinfab.pieces import Piece
 from skinfab.wire_exits import WirePad
 
 MATERIAL = load_material()
+#: The same with upright walls, where a length by hand is to be exact.
+UPRIGHT = replace(MATERIAL, mould=replace(MATERIAL.mould, draft_deg=0.0))
 
 
 def piece_from_cells(cells: list[tuple[int, int]], size: float, *, joins: list[tuple[int, int]] | None = None) -> Piece:
@@ -123,7 +126,10 @@ def test_stl_is_watertight_and_its_cavity_is_area_times_depth(name: str, tmp_pat
         # Pockets between two outer walls are hollow too, but they hold no silicone.
         seeds = shapely.points(piece.UV[piece.F].mean(axis=1))
         hollow.append(sum(part.area for part in shapely.get_parts(inside) if shapely.contains(part, seeds).any()))
-    np.testing.assert_allclose(hollow, area, rtol=0.005)
+    # The walls lean about half the depth: the sections grow, and what the lower ones lack the upper ones have.
+    assert (np.diff(hollow) > 0).all() and np.mean(hollow) == pytest.approx(area, rel=0.005)
+    mitred = [float(cavity_region(piece).buffer((z - heights.mean()) * np.tan(np.radians(2)), join_style="mitre").area) for z in heights]
+    np.testing.assert_allclose(hollow, mitred, rtol=1e-3)
     assert mould.cavity_ml == pytest.approx(area * 2.5 / 1000, rel=0.005)
     assert mould.top_z - mould.fill_z == FREEBOARD_MM
     assert solid.bounds[1, 2] == pytest.approx(mould.top_z, abs=1e-5) and solid.bounds[0, 2] == 0
@@ -131,12 +137,59 @@ def test_stl_is_watertight_and_its_cavity_is_area_times_depth(name: str, tmp_pat
 
 def test_volume_by_hand(tmp_path: Path) -> None:
     # 40 x 20 piece, wall 1.6, plate 6 beyond it; grooves 0.8 wide and 0.8 deep, an L of 6 + 6 + 0.8/2 corner.
-    mould = casting_mould(PIECES["rectangle"], material=MATERIAL)
+    mould = casting_mould(PIECES["rectangle"], material=UPRIGHT)
     outer, plate = 43.2 * 23.2, (43.2 + 12) * (23.2 + 12)
     groove = 2 * 6.4 * 0.8 - 0.8**2
     by_hand = plate * 1.6 + (outer - 800) * 3.0 - 3 * groove * 0.8
     assert read_back(mould, tmp_path).volume == pytest.approx(by_hand, rel=1e-4)
     np.testing.assert_allclose(mould.marks, [[-4.6, -4.6], [44.6, -4.6], [-4.6, 24.6]], atol=1e-9)
+
+
+@pytest.mark.parametrize("draft", [0.5, 2.0, 5.0, 20.0])
+def test_volume_of_a_drafted_cavity_in_closed_form(draft: float) -> None:
+    # A frustum of a 40 x 20 plate: the integral of (40 + 2t)(20 + 2t), t from -h to h at half the depth's lean h.
+    leaning = replace(MATERIAL, mould=replace(MATERIAL.mould, draft_deg=draft))
+    h = 1.25 * np.tan(np.radians(draft))
+    mould = casting_mould(PIECES["rectangle"], material=leaning)
+    assert mould.cavity_ml * 1000 == pytest.approx(2.5 * (40 * 20 + 4 / 3 * h**2), rel=1e-5)  # the grid is 1e-4 mm
+    assert mould.cavity_ml * 1000 == pytest.approx(40 * 20 * 2.5, rel=0.005)
+
+
+@pytest.mark.parametrize("name", PIECES)
+def test_the_cast_comes_out(name: str, tmp_path: Path) -> None:
+    # No face of the mould looks down but its underside, and every wall round the silicone leans by the draft.
+    piece = PIECES[name]
+    ring = np.vstack([piece.outline, piece.outline[:1]])
+    mould = casting_mould(piece, material=MATERIAL, lips=[ring[:3]], pads=[pad_at(*piece.UV.mean(axis=0))])
+    solid = read_back(mould, tmp_path)
+    real = solid.area_faces > 1e-4
+    down = solid.face_normals[:, 2] < -1e-3
+    assert (solid.triangles_center[real & down, 2] < 1e-6).all()
+    leaning = np.degrees(np.arcsin(solid.face_normals[real, 2]))
+    middle = solid.triangles_center[real]
+    slanted = (leaning > 0.1) & (leaning < 89)
+    assert slanted.any()
+    share = np.average(np.abs(leaning[slanted] - 2.0) < 0.3, weights=solid.area_faces[real][slanted])
+    assert share > 0.97, share
+    assert ((middle[slanted, 2] > mould.floor_z) & (middle[slanted, 2] < mould.top_z)).all()
+
+
+def test_lips_hold_their_volume_beside_leaning_walls() -> None:
+    for piece in PIECES.values():
+        ring = np.vstack([piece.outline, piece.outline[:1]])
+        for draft in (2.0, 10.0):
+            leaning = replace(MATERIAL, mould=replace(MATERIAL.mould, draft_deg=draft))
+            mould = casting_mould(piece, material=leaning, lips=[ring[:3]])
+            assert mould.cavity_ml * 1000 == pytest.approx(piece.area * 2.5, rel=0.005)
+
+
+def test_a_draft_that_eats_the_wall_is_refused() -> None:
+    leaning = replace(MATERIAL, mould=replace(MATERIAL.mould, draft_deg=30.0))
+    with pytest.raises(InputError, match=r"mould\.draft_deg is 30.*lower it to 24"):
+        casting_mould(PIECES["rectangle"], material=leaning)
+    casting_mould(PIECES["rectangle"], material=replace(MATERIAL, mould=replace(MATERIAL.mould, draft_deg=24.0)))
+    with pytest.raises(InputError, match="must be below 90"):
+        casting_mould(PIECES["rectangle"], material=replace(MATERIAL, mould=replace(MATERIAL.mould, draft_deg=90.0)))
 
 
 def test_marks_are_grooves_where_they_are_said_to_be(tmp_path: Path) -> None:
@@ -167,8 +220,8 @@ def test_slot_does_not_open_into_a_dart(tmp_path: Path) -> None:
 
 def test_a_lip_gives_way_to_a_slot(tmp_path: Path) -> None:
     lips = [np.array([[0.0, 0.0], [40.0, 0.0]])]
-    whole = casting_mould(PIECES["rectangle"], material=MATERIAL, lips=lips)
-    mould = casting_mould(PIECES["rectangle"], material=MATERIAL, lips=lips, pads=[pad_at(12.0, 3.0)])
+    whole = casting_mould(PIECES["rectangle"], material=UPRIGHT, lips=lips)
+    mould = casting_mould(PIECES["rectangle"], material=UPRIGHT, lips=lips, pads=[pad_at(12.0, 3.0)])
     solid = read_back(mould, tmp_path)
     assert solid.is_watertight and mould.cavity_ml == pytest.approx(2.0, rel=1e-4)
     # 1.2 mm of slot and a wall of 1.6 mm either side of it: that much of the 4 x 0.5 mm lip is wall instead.
@@ -205,7 +258,7 @@ def test_closed_dart_is_cast_in_one_and_said_so() -> None:
 def test_lip_is_a_shelf_of_the_top_layers_thickness(tmp_path: Path) -> None:
     # Along the lower edge of a 40 x 20 plate: 4 mm wide, 0.5 mm thick, a quarter disk of wall cut off either end.
     piece = PIECES["rectangle"]
-    mould = casting_mould(piece, material=MATERIAL, lips=[np.array([[0.0, 0.0], [40.0, 0.0]])])
+    mould = casting_mould(piece, material=UPRIGHT, lips=[np.array([[0.0, 0.0], [40.0, 0.0]])])
     solid = read_back(mould, tmp_path)
     assert solid.is_watertight and mould.cavity_ml == pytest.approx(2.0, rel=1e-4)
     assert mould.lip_ml * 1000 == pytest.approx((40 * 4 - 2 * np.pi * 1.6**2 / 4) * 0.5, rel=0.01)
@@ -215,7 +268,7 @@ def test_lip_is_a_shelf_of_the_top_layers_thickness(tmp_path: Path) -> None:
     assert filled(solid, beyond).all()
     # No film of plastic where the lip joins the piece.
     assert not filled(solid, [[20.0, y, mould.fill_z - 0.2] for y in np.linspace(-0.2, 0.2, 41)]).any()
-    plain = casting_mould(piece, material=MATERIAL)
+    plain = casting_mould(piece, material=UPRIGHT)
     assert plain.lip_ml == 0 and mould.marks[0, 1] == pytest.approx(plain.marks[0, 1] - 4)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 from dataclasses import replace
 from pathlib import Path
 
@@ -56,8 +57,10 @@ def test_one_stl_a_piece_and_the_recipe(skin: Skin, tmp_path: Path, capsys: pyte
 
     plain = casting_mould(skin.pieces[0], material=load_material())
     slotted = trimesh.load_mesh(tmp_path / "out" / "moulds" / "P1.stl")
-    # Two slots of 1.2 mm through 1.6 mm of wall, 0.5 mm deep.
-    assert float(plain_volume(plain.V, plain.F) - slotted.volume) == pytest.approx(2 * 1.2 * 1.6 * 0.5, rel=0.01)
+    # Two slots of 1.2 mm, 0.5 mm deep, through a wall of 1.6 mm that leans out by 2 degrees about half of 2.5 mm.
+    assert float(plain_volume(plain.V, plain.F) - slotted.volume) == pytest.approx(
+        2 * 1.2 * (1.6 - 1.5 * math.tan(math.radians(2))) * 0.5, rel=0.001
+    )
 
 
 def plain_volume(V: np.ndarray, F: np.ndarray) -> float:
