@@ -9,7 +9,7 @@ demo: setup
 	@echo "Results are in demo_out/: open demo_out/report.html in a browser; G-code is in demo_out/gcode/, moulds in demo_out/mould/."
 
 test: lint
-	@tests/setup_octoprint.sh || { [ -z "$$CI" ] && echo "test: going on without OctoPrint; the tests that need it are skipped"; }
+	@for one in tests/setup_*.sh; do $$one || { [ -z "$$CI" ] && echo "test: going on without $$one; the tests that need it are skipped"; } || exit 1; done
 	$(PYTHON) -m pytest -q -W error -n 2 --dist loadgroup --doctest-modules skinfab gcode tests
 
 lint: setup

@@ -1,6 +1,7 @@
 """A piece, sensors of plain lines and arcs, and strategies for paths that use every kind of segment."""
 
 import math
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -9,6 +10,7 @@ import pytest
 from hypothesis import strategies as st
 
 from gcode.geometry import shape_of
+from gcode.marlin import emit
 from gcode.plan import plan
 from gcode.printer import Printer, load_printer
 from gcode.program import Comment, Extrude, Prime, Program, Retract, Travel
@@ -125,3 +127,37 @@ def planned(make_piece: Callable, make_sensor: Callable, hairpin: Path, printer:
     """Two hairpins on one piece."""
     sensors = [make_sensor("C1", hairpin, 20, 20), make_sensor("C2", hairpin, 30, 60, 0.2)]
     return plan(make_piece(120, 100), sensors, printer=printer, material=material)
+
+
+#: What can be wrong with a file that still looks like one: a pattern in its text, and what to put there.
+FAULTS = {
+    "an arc off the bed": (r"^G3 X\S+ Y\S+ I\S+ J\S+", r"G2 X195.0000 Y155.0000 I-400.0000 J5.0000"),
+    "a wrong radius": (r"^(G3 \S+ \S+ \S+) J\S+", r"\1 J4.0000"),
+    "a wrong sign of E": (r"^(G1 X\S+ Y\S+) E", r"\1 E-"),
+    "G90 after M83": (r"^M83.*$", "M83\nG90"),
+}
+
+
+@pytest.fixture(scope="session")
+def faulty(planned, printer: Printer) -> Callable[[str], str]:  # type: ignore[no-untyped-def]
+    """The text of the two hairpins with one planted fault of that name."""
+
+    def text(fault: str) -> str:
+        changed, count = re.subn(*FAULTS[fault], emit(planned.program, printer), count=1, flags=re.MULTILINE)
+        assert count == 1
+        return changed
+
+    return text
+
+
+@pytest.fixture(scope="session")
+def peers_spiral() -> str:
+    """A contact spiral as TSDF begins it: its lead stops at x = l, although the circle it joins meets y = 0 elsewhere."""
+    lead, s, b, x0, y0 = 6.0, 22.0, 3.0, 100.0, 100.0
+    return (
+        "G21\nG90\nM83\nM302 P1\nG28 X Y\nG0 Z10 F300\n"
+        f"G0 X{x0:.4f} Y{y0:.4f} F6000\nG0 Z1.6 F300\n"
+        f"G1 X{x0 + lead:.4f} Y{y0:.4f} E24 F240\n"
+        f"G3 X{x0 + lead + s:.4f} Y{y0 + b / 2:.4f} I{s / 2:.4f} J{b / 2:.4f} E132 F240\n"
+        "G0 Z10 F300\n"
+    )
