@@ -26,7 +26,7 @@ FLOORS = (
     ("pieces", "flatten"),
     ("seams", "placement"),
     ("skin",),
-    ("document", "mould", "mould_plan", "mould_taper", "wire_exits", "recipe", "work_order", "drawings", "report"),
+    ("document", "mould", "mould_plan", "mould_taper", "wiring", "wire_exits", "recipe", "work_order", "drawings", "report"),
     ("cli", "bench", "__main__"),
 )
 FLOOR_OF = {room: k for k, rooms in enumerate(FLOORS) for room in rooms}

@@ -30,7 +30,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "make",
         help="mesh in, everything out: seams, flat pieces, sensors, G-code, moulds, report",
         description="From a mesh to a skin ready to be cast and printed. DIR gets skin.skin, report.json, report.html, preview.png, "
-        "flat.svg, flat.dxf, flat.obj, gcode/PIECE.gcode and mould/PIECE.stl. In place of a mesh, a skin document may be given: its "
+        "flat.svg, flat.dxf, flat.obj, wiring.csv, gcode/PIECE.gcode and mould/PIECE.stl. In place of a mesh, a skin document may be given: its "
         "seams, and its sensors where it has any, are taken as they are.",
     )
     steps.add_mesh_options(p)
@@ -75,6 +75,7 @@ def _make(args: argparse.Namespace, folder: Path, watch: Stopwatch, progress: Pr
     from skinfab.mould import can_be_cast
     from skinfab.progress import peak_rss_mb
     from skinfab.report.build import build_report, write_report
+    from skinfab.wiring import wiring, write_wiring
 
     start = _document if args.mesh.suffix.lower() == ".skin" else _cut_mesh
     skin, distortions, used, notes = start(args, watch, progress)
@@ -100,6 +101,7 @@ def _make(args: argparse.Namespace, folder: Path, watch: Stopwatch, progress: Pr
     with watch.phase("draw"):
         save_skin(skin, folder / "skin.skin")
         _write_drawings(skin, folder)
+        write_wiring(wiring(skin, used.material), folder / "wiring.csv")
     report = build_report(
         skin,
         distortions,

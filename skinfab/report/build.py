@@ -23,6 +23,7 @@ from skinfab.placement.sensor import Sensor
 from skinfab.placement.wrap_strain import wrap_strain
 from skinfab.report.cautions import cautions
 from skinfab.skin import Skin
+from skinfab.wiring import board_of
 
 #: Version of the report's shape.
 SCHEMA = 1
@@ -181,6 +182,7 @@ def _sensors(skin: Skin, material: Material) -> list[dict[str, Any]]:
 
 def _sensor(skin: Skin, sensor: Sensor, material: Material, locator: Locator) -> dict[str, Any]:
     length = sensor.path.length
+    board, board_input = board_of(sensor.channel)
     r = resistance(length, material.ink)
     strain = wrap_strain(skin.mesh, skin.piece(sensor.piece), sensor.path, locator=locator)
     return {
@@ -194,6 +196,8 @@ def _sensor(skin: Skin, sensor: Sensor, material: Material, locator: Locator) ->
         "resistance_kohm": {"low": r.low, "median": r.median, "high": r.high},
         "wrap_strain": {"mean": strain.mean, "max": strain.max},
         "channel": sensor.channel,
+        "board": board,
+        "board_input": board_input,
         "terminals_mm": [sensor.path.start.tolist(), sensor.path.end.tolist()],
     }
 

@@ -179,12 +179,26 @@ def _wires(report: Mapping[str, Any]) -> str:
         for slot in mould.get("wire_slots", [])
     }
     rows = [
-        [f"{s['id']}-{k}", s["id"], str(k), s["piece"], f"{x:.1f}, {y:.1f}", slots.get((s["id"], k), "not known"), str(s["channel"])]
+        [
+            f"{s['id']}-{k}",
+            s["id"],
+            str(k),
+            s["piece"],
+            f"{x:.1f}, {y:.1f}",
+            slots.get((s["id"], k), "not known"),
+            str(s["channel"]),
+            _input(s),
+        ]
         for s in report["sensors"]
         for k, (x, y) in enumerate(s["terminals_mm"], start=1)
     ]
-    head = ["wire", "sensor", "#terminal", "piece", "#pad at x, y, mm", "#slot at x, y, mm", "#channel"]
+    head = ["wire", "sensor", "#terminal", "piece", "#pad at x, y, mm", "#slot at x, y, mm", "#channel", "board, input"]
     return _table(head, rows, "Label each wire as you pierce it into its pad. x and y count from the piece's origin, the + in the picture.")
+
+
+def _input(sensor: Mapping[str, Any]) -> str:
+    """Which input of which multiplexer board, as the boards' print counts them."""
+    return f"{sensor['board']}, C{sensor['board_input']}" if "board" in sensor else "not known"
 
 
 def _gcode(report: Mapping[str, Any]) -> str:

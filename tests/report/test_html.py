@@ -141,9 +141,9 @@ def test_two_wires_a_sensor(skin: Skin, distortions: list[Distortion], tmp_path:
     mould = {"file": "mould/P1.stl", "watertight": True, "cavity_ml": 30.0, "wire_slots": slots}
     page_of(skin, distortions, tmp_path, moulds=[mould])
     first, second, *rest = rows_of(tmp_path, "Wires")
-    assert first == ["S1-1", "S1", "1", "P1", "90.0, 20.0", "88.0, 0.0", "0"]
-    assert second == ["S1-2", "S1", "2", "P1", "90.0, 26.0", "91.0, 0.0 (shared)", "0"]
-    assert [(row[0], row[5], row[6]) for row in rest] == [("C1-1", "not known", "1"), ("C1-2", "not known", "1")]
+    assert first == ["S1-1", "S1", "1", "P1", "90.0, 20.0", "88.0, 0.0", "0", "1, C0"]
+    assert second == ["S1-2", "S1", "2", "P1", "90.0, 26.0", "91.0, 0.0 (shared)", "0", "1, C0"]
+    assert [(row[0], *row[5:]) for row in rest] == [("C1-1", "not known", "1", "1, C1"), ("C1-2", "not known", "1", "1, C1")]
 
 
 def test_sizes_and_ink_where_they_are_known(skin: Skin, distortions: list[Distortion], tmp_path: Path) -> None:
