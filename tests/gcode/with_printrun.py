@@ -1,8 +1,8 @@
 """Runs in .venv-printrun, not under pytest: printrun reads or sends a file, pyGCodeDecode times it; the result is one JSON object.
 
-    python with_printrun.py read FILE
-    python with_printrun.py send FILE HOST:PORT give-up|resume|restart
-    python with_printrun.py time FILE PRESETS.yaml
+python with_printrun.py read FILE
+python with_printrun.py send FILE HOST:PORT give-up|resume|restart
+python with_printrun.py time FILE PRESETS.yaml
 """
 
 import json
