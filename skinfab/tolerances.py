@@ -47,6 +47,15 @@ PRINTABLE_WALL_MM = 0.4
 #: Step to which a message rounds a pattern's parameter: finer than any printer places a bead.
 PARAMETER_STEP_MM = 0.001
 
+#: Parameters may miss a bound by this much: 0.1 + 0.2 is more than 0.3 by rounding, and no printer knows.
+PARAMETER_ROUNDING_MM = 1e-9
+
+#: No pattern has a parameter longer than this: no bed is, and a path of millions of turns would take all memory.
+LARGEST_PATTERN_MM = 1000.0
+
+#: No bead is narrower: half of what the finest dispensing nozzles lay.
+LEAST_BEAD_MM = 0.05
+
 #: An arc whose ends lie closer than this is printed as a line: 100 cells of the 0.0001 mm output grid, below which
 #: rounding could turn its end behind its start and so make a full circle of it.
 SHORT_ARC_MM = 0.01
@@ -131,3 +140,18 @@ LEAST_EDGE_WEIGHT = 0.2
 #: A layout carried over from a simplified mesh is kept where the mean d could lose at most this: a twenty-fifth of what
 #: separates a perfect piece from the usual bound of 4.05.
 SIMPLIFY_EFFECT = 0.002
+
+#: Offsetting, a triangle folds when less than this fraction of its area is left, seen along its old normal: what is nearly
+#: gone has no shape to flatten either.
+OFFSET_LEAST_AREA = 0.05
+
+#: An offset surface meets itself where it lies nearer to the object than this fraction of the distance: chords of a curve and
+#: rounded-off edges take a few per cent, and silicone gives way by as much as the rest.
+OFFSET_NEAR = 0.8
+
+#: No vertex moves by more than this many times the offset: a cube's corner needs the root of 3, and a blade's would fly off.
+OFFSET_MITRE = 2.0
+
+#: Faces about a vertex count as planes of their own where their normals differ by the second of these (two of them, rad), and as
+#: one curved surface below the first: there the sideways part of a least-squares fit is mostly noise of the triangulation.
+OFFSET_CREASE_RAD = (0.3490658503988659, 0.5235987755982988)  # 20 and 30 degrees

@@ -1,7 +1,17 @@
-"""How far a sensor is stretched by being worn: the membrane part.
+"""How far a sensor is stretched by being worn, and what that does to its resistance.
 
-The flat skin is put back on the object by the inverse of the flattening. Along a path of unit direction t
-a triangle's map J from the plane to the object stretches the conductor by |J t|.
+The flat skin is put back on the object by the inverse of the flattening. Along a path of unit direction t a triangle's
+map J from the plane to a surface stretches what lies there by |J t|. Two surfaces count, both parallel to the object's:
+
+* the skin's neutral one, half-way through its thickness unless said otherwise: what is stretched there is the *membrane*
+  part. It is nothing where that surface was flattened without distortion, and what a skin lacks in girth where the
+  object's own surface was flattened;
+* the one the conductor lies in, as high over the skin's inner side as it was printed over the floor of the mould. What it
+  is stretched beyond the neutral one is the *bending* part: normal curvature along the path times the distance of the
+  two surfaces, positive where a conductor outside the neutral surface goes round something convex.
+
+The flat pieces are seen from outside the object, and are cast and printed that way up: the side on the mould's floor is
+the inner one, which lies on the object. A printed line keeps its volume, so that its resistance goes with (1 + e)^2.
 """
 
 from __future__ import annotations
@@ -14,10 +24,27 @@ from numpy.typing import NDArray
 from skinfab.errors import InputError
 from skinfab.flatten.locate import Locator
 from skinfab.mesh.model import Mesh
+from skinfab.mesh.offset import offset_mesh
 from skinfab.paths import Line, Path
 from skinfab.pieces import Piece
 
 Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Strain:
+    """One part of the strain along a path, 1 = 100 %; positive is stretched.
+
+    Parameters
+    ----------
+    mean : float
+        Weighted by length.
+    max : float
+        The strain of the largest size, with its sign.
+    """
+
+    mean: float
+    max: float
 
 
 @dataclass(frozen=True)
@@ -30,18 +57,99 @@ class WrapStrain:
         Weighted by length: the worn length is (1 + mean) times the printed one.
     max : float
         The strain of the largest size, with its sign.
+    membrane, bending : Strain
+        The parts; their means add up to `mean`.
+    worn_length : float, mm
+        On the object.
+    resistance_factor : float
+        Resistance of the worn line over that of the flat one: (1 + e)^2 averaged along it.
     """
 
     mean: float
     max: float
+    membrane: Strain
+    bending: Strain
+    worn_length: float
+    resistance_factor: float
 
 
-def wrap_strain(mesh: Mesh, piece: Piece, path: Path, *, step: float = 0.25, locator: Locator | None = None) -> WrapStrain:
-    """Integrate the stretch of putting `piece` back on `mesh` along a path on it.
+@dataclass(frozen=True, eq=False)
+class WornSkin:
+    """The surfaces of a worn skin that matter to its conductors.
 
     Parameters
     ----------
-    mesh : Mesh
+    neutral : Mesh
+        That is not stretched by bending.
+    conductor : Mesh
+        In which the conductors lie; same faces and vertices.
+    even : float, mm
+        Strain is averaged over this length of path: a skin bridges what is shorter than it is thick, as the bumps of a scan.
+    """
+
+    neutral: Mesh
+    conductor: Mesh
+    even: float = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class StrainAlong:
+    """Strain of short pieces of a path, in their order.
+
+    Parameters
+    ----------
+    points : (n, 2) mm
+        Their middles, in the piece frame.
+    lengths : (n,) mm
+    membrane, bending : (n,)
+    """
+
+    points: Array
+    lengths: Array
+    membrane: Array
+    bending: Array
+
+    @property
+    def together(self) -> Array:
+        """(n,) membrane and bending."""
+        return self.membrane + self.bending
+
+
+def worn_skin(
+    object_mesh: Mesh, flattened: Mesh, *, flattened_at: float, neutral_at: float, conductor_at: float, even: float = 0.0
+) -> WornSkin:
+    """The neutral surface and the conductors' one, at their distances outside an object.
+
+    Parameters
+    ----------
+    object_mesh : Mesh
+    flattened : Mesh
+        The surface that was flattened; same faces and vertices.
+    flattened_at, neutral_at, conductor_at : float, mm
+        Distance outside the object of the surface that was flattened (0: the object's own), of the neutral one and of the
+        conductors' one.
+    even : float, mm
+        See `WornSkin`.
+    """
+    farthest = max(neutral_at, conductor_at)
+    if flattened_at > 0:
+        step = (flattened.V - object_mesh.V) / flattened_at
+    elif farthest > 0:
+        step = (offset_mesh(object_mesh, farthest, round_off=True).mesh.V - object_mesh.V) / farthest
+    else:
+        return WornSkin(object_mesh, object_mesh, even)
+    at = {flattened_at: flattened}  # exactly, where it is the same
+    neutral, conductor = (at.get(d) or Mesh(object_mesh.V + d * step, object_mesh.F, object_mesh.name) for d in (neutral_at, conductor_at))
+    return WornSkin(neutral, conductor, even)
+
+
+def wrap_strain(worn: WornSkin | Mesh, piece: Piece, path: Path, *, step: float = 0.25, locator: Locator | None = None) -> WrapStrain:
+    """Integrate the stretch of putting `piece` back on the object along a path on it.
+
+    Parameters
+    ----------
+    worn : WornSkin or Mesh
+        A mesh stands for a skin without thickness on it.
     piece : Piece
     path : Path
         In the piece frame.
@@ -59,18 +167,71 @@ def wrap_strain(mesh: Mesh, piece: Piece, path: Path, *, step: float = 0.25, loc
     --------
     >>> V, F = np.array([[0.0, 0, 0], [10, 0, 0], [0, 10, 0]]), np.array([[0, 1, 2]])
     >>> half_size = Piece("P1", np.array([0]), np.array([0, 1, 2]), F, V[:, :2] / 2)
-    >>> wrap_strain(Mesh(V, F), half_size, Path((Line((1, 1), (3, 1)),)))
-    WrapStrain(mean=1.0, max=1.0)
+    >>> strain = wrap_strain(Mesh(V, F), half_size, Path((Line((1, 1), (3, 1)),)))
+    >>> strain.mean, strain.max, strain.bending.mean, strain.worn_length, strain.resistance_factor
+    (1.0, 1.0, 0.0, 4.0, 4.0)
     """
+    return summary(strain_along(worn, piece, path, step=step, locator=locator), even=worn.even if isinstance(worn, WornSkin) else 0.0)
+
+
+def strain_along(worn: WornSkin | Mesh, piece: Piece, path: Path, *, step: float = 0.25, locator: Locator | None = None) -> StrainAlong:
+    """As `wrap_strain`, point by point and not averaged."""
+    if isinstance(worn, Mesh):
+        worn = WornSkin(worn, worn)
     points, tangents, lengths = _samples(path, step)
     face = (locator or Locator(piece.UV, piece.F)).faces(points)
     if (face < 0).any():
         x, y = points[np.argmax(face < 0)]
         raise InputError(f"the path leaves piece {piece.id} near ({x:.1f}, {y:.1f}) mm; wrap strain needs all of it on the piece")
     used, at = np.unique(face, return_inverse=True)
-    stretch = np.linalg.norm(np.einsum("nij,nj->ni", unflattening(mesh, piece, used)[at], tangents), axis=1)
-    strain = stretch - 1
-    return WrapStrain(mean=float(strain @ lengths / lengths.sum()), max=float(strain[np.argmax(np.abs(strain))]))
+
+    def stretch(mesh: Mesh) -> Array:
+        length: Array = np.linalg.norm(np.einsum("nij,nj->ni", unflattening(mesh, piece, used)[at], tangents), axis=1)
+        return length
+
+    neutral = stretch(worn.neutral)
+    conductor = neutral if worn.conductor is worn.neutral else stretch(worn.conductor)
+    return StrainAlong(points, lengths, neutral - 1, conductor - neutral)
+
+
+def summary(along: StrainAlong, *, even: float = 0.0) -> WrapStrain:
+    """Mean and extremes of the strain along a path, and what follows from it.
+
+    Parameters
+    ----------
+    along : StrainAlong
+    even : float, mm
+        Extremes and resistance are those of the mean over this length of path.
+    """
+    together = _strain(along.together, along.lengths, even)
+    evened = running_mean(along.together, along.lengths, even)
+    length = float(along.lengths.sum())
+    return WrapStrain(
+        mean=together.mean,
+        max=together.max,
+        membrane=_strain(along.membrane, along.lengths, even),
+        bending=_strain(along.bending, along.lengths, even),
+        worn_length=(1 + together.mean) * length,
+        resistance_factor=float((1 + evened) ** 2 @ along.lengths / length),
+    )
+
+
+def running_mean(values: Array, lengths: Array, window: float) -> Array:
+    """Mean of `values` (n,) over `window` mm about the middle of each piece of a path, as far as the path reaches.
+
+    Examples
+    --------
+    >>> running_mean(np.array([0.0, 3, 0, 0]), np.ones(4), 3.0).tolist()
+    [1.5, 1.0, 1.0, 0.0]
+    """
+    if window <= 0:
+        return values
+    ends = np.concatenate([[0.0], np.cumsum(lengths)])
+    total = np.concatenate([[0.0], np.cumsum(values * lengths)])
+    middle = (ends[1:] + ends[:-1]) / 2
+    low, high = np.maximum(middle - window / 2, 0.0), np.minimum(middle + window / 2, ends[-1])
+    mean: Array = (np.interp(high, ends, total) - np.interp(low, ends, total)) / (high - low)
+    return mean
 
 
 def unflattening(mesh: Mesh, piece: Piece, faces: NDArray[np.int64]) -> Array:
@@ -80,6 +241,11 @@ def unflattening(mesh: Mesh, piece: Piece, faces: NDArray[np.int64]) -> Array:
     edges_space = np.stack([space[:, 1] - space[:, 0], space[:, 2] - space[:, 0]], axis=2)
     edges_flat = np.stack([flat[:, 1] - flat[:, 0], flat[:, 2] - flat[:, 0]], axis=2)
     return edges_space @ np.linalg.inv(edges_flat)
+
+
+def _strain(values: Array, lengths: Array, even: float) -> Strain:
+    evened = running_mean(values, lengths, even)
+    return Strain(mean=float(values @ lengths / lengths.sum()), max=float(evened[np.argmax(np.abs(evened))]))
 
 
 def _samples(path: Path, step: float) -> tuple[Array, Array, Array]:
