@@ -1,22 +1,27 @@
 """What every pattern is: parameters with bounds, a path with its leads along +x, two pads.
 
-A new pattern is one file with one frozen dataclass that inherits `Pattern`, states `kind`, and
-builds `path()`; list it in `registry.PATTERNS` and the command line, the report and the property
-tests know it.
+A new pattern is one file in this folder with one frozen dataclass that inherits `Pattern`, states
+`kind`, `senses` and an `example`, and builds `path()`; docs/patterns.md makes one step by step.
 """
 
 from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from numbers import Real
-from typing import Any, ClassVar
+from typing import Any, ClassVar, TypeAlias
+
+import numpy as np
 
 from skinfab.errors import InputError
 from skinfab.paths import Path, Point
 from skinfab.patterns.pads import pad_stroke
-from skinfab.tolerances import PARAMETER_STEP_MM
+from skinfab.tolerances import LARGEST_PATTERN_MM, LEAST_BEAD_MM, PARAMETER_ROUNDING_MM, PARAMETER_STEP_MM
+
+#: A length to be drawn on a pattern's picture: the parameter's name, and from where to where in the pattern's frame, mm.
+Dimension: TypeAlias = tuple[str, tuple[float, float], tuple[float, float]]
 
 
 class PatternError(InputError):
@@ -30,7 +35,7 @@ class PatternError(InputError):
     """
 
     def __init__(self, kind: str, parameter: str, value: Any, bound: str, nearest: float) -> None:
-        super().__init__(f"{kind}: {parameter} is {value!r}; {bound}; the nearest value that works is {nearest:g}")
+        super().__init__(f"{kind}: {parameter} is {value!r}; {bound}; the nearest value that works is {_shown(nearest)}")
         self.parameter = parameter
         self.nearest = nearest
 
@@ -48,6 +53,15 @@ class Pattern(ABC):
     pad : float, mm
         Side of the square contact pad at either terminal; 0 for none.
 
+    Attributes
+    ----------
+    kind : str
+        The name in files and on the command line.
+    senses : str
+        "contact" or "strain": what is placed on faces, or across joints with its span; its first letter begins the ids.
+    example : mapping of str to number
+        Parameters of a typical one, for the picture; the property tests start from them.
+
     Raises
     ------
     PatternError
@@ -55,6 +69,8 @@ class Pattern(ABC):
     """
 
     kind: ClassVar[str]
+    senses: ClassVar[str]
+    example: ClassVar[Mapping[str, float]]
 
     bead: float = 0.785
     gap: float = 0.6
@@ -73,7 +89,10 @@ class Pattern(ABC):
             if field.type == "int" and number != round(number):
                 raise PatternError(self.kind, field.name, value, "it is a count and must be whole", round(number))
             object.__setattr__(self, field.name, round(number) if field.type == "int" else number)
-        self._at_least("bead", PARAMETER_STEP_MM, "the bead must have a width")
+            # Counts are bounded by the lengths, in the pattern's own words.
+            if field.type != "int":
+                self._at_most(field.name, LARGEST_PATTERN_MM, "no bed is larger")
+        self._at_least("bead", LEAST_BEAD_MM, "no nozzle is finer")
         self._at_least("gap", 0.0, "a distance cannot be negative")
         if self.pad:
             self._at_least("pad", 2 * self.bead, "a pad must be two beads wide, or 0 for none")
@@ -86,6 +105,20 @@ class Pattern(ABC):
     @abstractmethod
     def path(self) -> Path:
         """The conductor from terminal to terminal, pads left out."""
+
+    @property
+    def length(self) -> float:
+        """Length of the path, mm; a pattern with a closed form gives it here."""
+        return self.path().length
+
+    @property
+    def span(self) -> float:
+        """How long the part that senses is along x, mm: the whole unless a pattern has leads to leave out."""
+        return float(np.ptp(self.path().bbox[:, 0]))
+
+    def dimensions(self) -> tuple[Dimension, ...]:
+        """What the picture shows of the parameters; each is as long as the parameter it names."""
+        return ()
 
     @property
     def middle(self) -> Point:
@@ -104,13 +137,25 @@ class Pattern(ABC):
 
     def _at_least(self, name: str, bound: float, why: str) -> None:
         value = getattr(self, name)
-        # The printed bound is rounded to the side on which it still works.
-        if not value >= bound:
-            nearest = math.ceil(bound / PARAMETER_STEP_MM) * PARAMETER_STEP_MM
-            raise PatternError(self.kind, name, value, f"it must be at least {nearest:.6g} ({why})", nearest)
+        if not value >= bound - PARAMETER_ROUNDING_MM:
+            nearest = _on_step(bound, up=True)
+            raise PatternError(self.kind, name, value, f"it must be at least {_shown(nearest)} ({why})", nearest)
 
     def _at_most(self, name: str, bound: float, why: str) -> None:
         value = getattr(self, name)
-        if not value <= bound:
-            nearest = math.floor(bound / PARAMETER_STEP_MM) * PARAMETER_STEP_MM
-            raise PatternError(self.kind, name, value, f"it must be at most {nearest:.6g} ({why})", nearest)
+        if not value <= bound + PARAMETER_ROUNDING_MM:
+            nearest = _on_step(bound, up=False)
+            raise PatternError(self.kind, name, value, f"it must be at most {_shown(nearest)} ({why})", nearest)
+
+
+def _on_step(bound: float, *, up: bool) -> float:
+    """A bound rounded to a parameter's step, to the side on which it still works."""
+    steps, rounding = bound / PARAMETER_STEP_MM, PARAMETER_ROUNDING_MM / PARAMETER_STEP_MM
+    count = math.ceil(steps - rounding) if up else math.floor(steps + rounding)
+    # Without the digits that a product with 0.001 leaves behind.
+    return round(count * PARAMETER_STEP_MM, 9)
+
+
+def _shown(number: float) -> str:
+    """All its steps and no more: 12, 1.385, 1000.001."""
+    return f"{number:.3f}".rstrip("0").rstrip(".")

@@ -7,13 +7,15 @@ here it is trimmed to where it meets the arc, so that every arc starts and ends 
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
 from skinfab.paths import Arc, Line, Path, Point, Segment
-from skinfab.patterns.base import Pattern, PatternError
+from skinfab.patterns.base import Dimension, Pattern, PatternError
+from skinfab.tolerances import PARAMETER_ROUNDING_MM
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,6 +54,8 @@ class ContactSpiral(Pattern):
     """
 
     kind: ClassVar[str] = "contact-spiral"
+    senses: ClassVar[str] = "contact"
+    example: ClassVar[Mapping[str, float]] = {"n": 3, "x": 2.0, "b": 3.0, "l": 6.0, "s": 22.0}
 
     n: int
     x: float
@@ -77,7 +81,7 @@ class ContactSpiral(Pattern):
     @staticmethod
     def half_turns_max(*, s: float, x: float, pitch_min: float) -> int:
         """The most half-turns `n` that fit: the innermost turn keeps bead + gap across, R_(n+1) >= pitch_min / 2."""
-        return math.floor((s / 2 - pitch_min / 2) / x) - 1
+        return math.floor((s / 2 - pitch_min / 2 + PARAMETER_ROUNDING_MM) / x) - 1
 
     @property
     def length(self) -> float:
@@ -93,6 +97,16 @@ class ContactSpiral(Pattern):
     def middle(self) -> Point:
         """Half-way between the two centres."""
         return np.array([self.l + self.s / 2 - self.x / 2, self.b / 2])
+
+    def dimensions(self) -> tuple[Dimension, ...]:
+        """Lead and diameter below, pitch at the outermost bottom turns, the leads' distance at the terminals."""
+        low, mid, bottom = self.b / 2 - self.s / 2, self.l + self.s / 2, self.b / 2 - self._radius(1)
+        return (
+            ("l", (0.0, low), (self.l, low)),
+            ("s", (self.l, low), (self.l + self.s, low)),
+            ("x", (mid, bottom), (mid, low)),
+            ("b", (0.0, 0.0), (0.0, self.b)),
+        )
 
     def _radius(self, k: int) -> float:
         return self.s / 2 - k * self.x

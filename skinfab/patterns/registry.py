@@ -1,19 +1,40 @@
-"""The patterns there are, by kind; a pattern from a name and a table of numbers, and back."""
+"""The patterns there are, by kind; a pattern from a name and a table of numbers, and back.
+
+Every module of this folder is looked at: a pattern is there because its file is.
+"""
 
 from __future__ import annotations
 
 import difflib
+import importlib
+import inspect
+import pkgutil
 from collections.abc import Mapping
 from dataclasses import MISSING, fields
 from typing import Any
 
+import skinfab.patterns
 from skinfab.errors import InputError
 from skinfab.patterns.base import Pattern
-from skinfab.patterns.contact_spiral import ContactSpiral
-from skinfab.patterns.strain_lines import StrainLines
 
-#: Every kind of pattern; add a new one here and nowhere else.
-PATTERNS: dict[str, type[Pattern]] = {cls.kind: cls for cls in (ContactSpiral, StrainLines)}
+
+def _find() -> dict[str, type[Pattern]]:
+    """The concrete subclasses of `Pattern` that the modules of this folder define, by kind."""
+    found: dict[str, type[Pattern]] = {}
+    for entry in pkgutil.iter_modules(skinfab.patterns.__path__):
+        name = f"skinfab.patterns.{entry.name}"
+        if name == __name__:
+            continue
+        for cls in vars(importlib.import_module(name)).values():
+            if isinstance(cls, type) and issubclass(cls, Pattern) and not inspect.isabstract(cls) and cls.__module__ == name:
+                if cls.kind in found:
+                    raise ImportError(f"two patterns are of kind {cls.kind!r}: in {found[cls.kind].__module__} and in {name}")
+                found[cls.kind] = cls
+    return dict(sorted(found.items()))
+
+
+#: Every kind of pattern; a new one needs a file in this folder and nothing else.
+PATTERNS: dict[str, type[Pattern]] = _find()
 
 
 def make_pattern(kind: str, params: Mapping[str, Any]) -> Pattern:

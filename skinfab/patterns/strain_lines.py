@@ -6,13 +6,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
 from skinfab.paths import Arc, Line, Path, Point, Segment
-from skinfab.patterns.base import Pattern, PatternError
+from skinfab.patterns.base import Dimension, Pattern, PatternError
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,6 +44,8 @@ class StrainLines(Pattern):
     """
 
     kind: ClassVar[str] = "strain-lines"
+    senses: ClassVar[str] = "strain"
+    example: ClassVar[Mapping[str, float]] = {"l1": 60.0, "l2": 54.0, "b": 6.0}
 
     l1: float
     l2: float
@@ -73,6 +76,19 @@ class StrainLines(Pattern):
     def middle(self) -> Point:
         """Of the loops, which belong across the joint."""
         return np.array([self.l1 - self.l2 / 2, self.b / 2])
+
+    @property
+    def span(self) -> float:
+        """Of the meander."""
+        return self.l2
+
+    def dimensions(self) -> tuple[Dimension, ...]:
+        """Both lengths below, the leads' distance at the terminals."""
+        return (
+            ("l1", (0.0, 0.0), (self.l1, 0.0)),
+            ("l2", (self.l1 - self.l2, 0.0), (self.l1, 0.0)),
+            ("b", (0.0, 0.0), (0.0, self.b)),
+        )
 
     def path(self) -> Path:
         """The conductor: `lines` lines and lines - 1 half-circles, each tangent to the next, mm."""

@@ -1,0 +1,127 @@
+"""What holds for every pattern there is, a new one included: each test runs over thousands of random sets of parameters."""
+
+import dataclasses
+import math
+import re
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from random_patterns import fault_of, mended, parameter_sets, patterns
+
+from skinfab.paths import Arc, Line
+from skinfab.patterns.base import Pattern
+from skinfab.patterns.registry import PATTERNS, make_pattern, parameters
+from skinfab.placement.check import own_clearance
+from skinfab.placement.sensor import Sensor
+from skinfab.tolerances import CLEARANCE_MM, PARAMETER_STEP_MM
+
+every_pattern = pytest.mark.parametrize("kind", PATTERNS)
+thousands = settings(max_examples=1000, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+
+#: Parts that each line or arc is sampled in.
+PARTS = 128
+
+
+def sampled(segment: Line | Arc, parts: int) -> np.ndarray:
+    return segment.point_at(np.linspace(0, 1, parts + 1))
+
+
+def chord_sum(segment: Line | Arc, parts: int) -> float:
+    return float(np.hypot(*np.diff(sampled(segment, parts), axis=0).T).sum())
+
+
+@every_pattern
+@thousands
+@given(data=st.data())
+def test_length_is_what_sampling_measures(kind: str, data: st.DataObject) -> None:
+    pattern = data.draw(patterns(kind))
+    # Sums of chords, extrapolated: halving the step quarters their error.
+    numeric = sum((4 * chord_sum(s, PARTS) - chord_sum(s, PARTS // 2)) / 3 for s in pattern.path().segments)
+    assert pattern.length == pytest.approx(numeric, rel=1e-9)
+
+
+@every_pattern
+@thousands
+@given(data=st.data(), angle=st.floats(-7, 7))
+def test_the_box_is_exact_at_any_angle(kind: str, data: st.DataObject, angle: float) -> None:
+    path = data.draw(patterns(kind)).printed_path().transformed(angle=angle, shift=(0.0, 0.0))
+    points = np.vstack([sampled(s, PARTS) for s in path.segments])
+    low, high = path.bbox
+    assert (points >= low - 1e-9).all() and (points <= high + 1e-9).all()
+    # A sample is at most half a part from the extreme point of its arc.
+    arcs = [s for s in path.segments if isinstance(s, Arc)]
+    missed = max((s.radius * (1 - np.cos(s.sweep / (2 * PARTS))) for s in arcs), default=0.0) + 1e-9
+    assert (points.min(axis=0) <= low + missed).all() and (points.max(axis=0) >= high - missed).all()
+
+
+@every_pattern
+@thousands
+@given(data=st.data())
+def test_advice_works_and_is_the_nearest(kind: str, data: st.DataObject) -> None:
+    params = data.draw(parameter_sets(kind))
+    fault = fault_of(kind, params)
+    mended(kind, params)
+    if fault is None:
+        return
+    name, given_value, nearest = fault.parameter, params[fault.parameter], fault.nearest
+    assert str(fault).startswith(f"{kind}: {name} is {given_value!r}; ")
+    # What is printed is what is meant, to the last digit.
+    printed = re.search(r"the nearest value that works is (\S+)$", str(fault))
+    assert printed and float(printed[1]) == nearest
+    then = fault_of(kind, {**params, name: nearest})
+    assert then is None or (then.parameter, then.nearest) != (name, nearest)
+    # A step and a bit back towards what was given breaks the bound again.
+    back = nearest + math.copysign(1.001 * PARAMETER_STEP_MM, given_value - nearest)
+    if isinstance(given_value, float) and abs(back - nearest) < abs(given_value - nearest):
+        again = fault_of(kind, {**params, name: back})
+        assert again is not None and again.parameter == name
+
+
+@every_pattern
+@settings(thousands, max_examples=250)
+@given(data=st.data())
+def test_a_pattern_keeps_off_itself(kind: str, data: st.DataObject) -> None:
+    pattern = data.draw(patterns(kind))
+    need = pattern.pitch_min
+    assert own_clearance(Sensor("C1", "P1", pattern, 0.0, 0.0, 0.0, 0), need=need) >= need - CLEARANCE_MM
+
+
+@every_pattern
+@thousands
+@given(data=st.data())
+def test_frame_and_terminals(kind: str, data: st.DataObject) -> None:
+    pattern = data.draw(patterns(kind))
+    path = pattern.path()
+    np.testing.assert_allclose(path.start, (0, 0), atol=1e-9)
+    # Where an arc meets a lead as a tangent, its end keeps half of the digits.
+    assert path.end[0] == pytest.approx(0, abs=1e-7) and path.end[1] >= pattern.pitch_min - 1e-7
+    first, last = path.segments[0], path.segments[-1]
+    for lead, outer in ((first, first.end), (last, last.start)):
+        assert isinstance(lead, Line) and outer[0] > 0 and np.ptp(lead.bbox[:, 1]) < 1e-7
+    low, high = path.bbox
+    assert low[0] >= -1e-7 and 0 < pattern.span <= high[0] - low[0] + 1e-7
+    assert (pattern.middle >= low - 1e-9).all() and (pattern.middle <= high + 1e-9).all()
+    assert make_pattern(kind, parameters(pattern)) == pattern
+
+
+@every_pattern
+@thousands
+@given(data=st.data())
+def test_dimensions_measure_their_parameters(kind: str, data: st.DataObject) -> None:
+    pattern = data.draw(patterns(kind))
+    for name, start, end in pattern.dimensions():
+        assert np.hypot(*np.subtract(end, start)) == pytest.approx(getattr(pattern, name), abs=1e-7)
+
+
+@every_pattern
+def test_the_example_is_a_pattern(kind: str) -> None:
+    cls = PATTERNS[kind]
+    own = {f.name for f in dataclasses.fields(cls)} - {f.name for f in dataclasses.fields(Pattern)}
+    assert own & set(cls.example) == set(cls.example)
+    pattern = make_pattern(kind, cls.example)
+    assert pattern.senses in ("contact", "strain") and re.fullmatch("[a-z]+(-[a-z]+)*", kind)
+    # Counts and switches have no length to show; everything else has.
+    lengths = {f.name for f in dataclasses.fields(cls) if f.name in own and f.type == "float"}
+    assert {name for name, _, _ in pattern.dimensions()} in (lengths, set())
