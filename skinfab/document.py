@@ -48,6 +48,8 @@ def save_skin(skin: Skin, path: str | Path) -> None:
         The file cannot be written.
     """
     arrays = {"mesh/V": skin.mesh.V, "mesh/F": skin.mesh.F, "seams": np.asarray(skin.seams).reshape(-1, 2)}
+    if skin.object_V is not None:
+        arrays["object/V"] = skin.object_V
     for k, piece in enumerate(skin.pieces):
         for field in ("faces", "vertices", "F", "UV"):
             arrays[f"pieces/{k}/{field}"] = getattr(piece, field)
@@ -119,7 +121,13 @@ def _describe(skin: Skin) -> dict[str, Any]:
         "material": skin.material,
         "max_distortion": float(skin.max_distortion),
         "seed": int(skin.seed),
+        # Left out where it says nothing: such a document is the same as those of releases that knew no thickness.
+        **({"thickness": {"thickness_mm": float(skin.thickness), "neutral": float(skin.neutral)}} if _is_thick(skin) else {}),
     }
+
+
+def _is_thick(skin: Skin) -> bool:
+    return skin.thickness > 0 or skin.neutral != Skin.neutral
 
 
 def _build(data: dict[str, Any], archive: Archive) -> Skin:
@@ -140,6 +148,7 @@ def _build(data: dict[str, Any], archive: Archive) -> Skin:
         raise InputError("two pieces share a face of the mesh; each face may be in one piece only")
     sensors = tuple(_sensor(entry, k, {p.id for p in pieces}) for k, entry in enumerate(_entries(data, "sensors")))
     _check_unique([s.id for s in sensors], "sensor")
+    thickness, neutral = _thickness(data)
     return Skin(
         mesh=mesh,
         source=_source(_get(data, "provenance", dict, "skin.json")),
@@ -150,7 +159,21 @@ def _build(data: dict[str, Any], archive: Archive) -> Skin:
         material=_get(data, "material", str, "skin.json"),
         max_distortion=_get(data, "max_distortion", float, "skin.json"),
         seed=_get(data, "seed", int, "skin.json"),
+        thickness=thickness,
+        neutral=neutral,
+        object_V=archive.array("object/V", "<f8", mesh.V.shape) if thickness * neutral > 0 else None,
     )
+
+
+def _thickness(data: dict[str, Any]) -> tuple[float, float]:
+    """Thickness and neutral surface; documents without them were flattened on the object itself."""
+    if "thickness" not in data:
+        return Skin.thickness, Skin.neutral
+    entry, where = _get(data, "thickness", dict, "skin.json"), "skin.json, thickness"
+    thickness, neutral = (_get(entry, key, float, where) for key in ("thickness_mm", "neutral"))
+    if thickness < 0 or not 0 <= neutral <= 1:
+        raise InputError(f"{where}: {thickness:g} mm with neutral {neutral:g}; they must be 0 or more, and from 0 to 1")
+    return thickness, neutral
 
 
 def _source(entry: dict[str, Any]) -> Source:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,6 +43,7 @@ class Skin:
     Parameters
     ----------
     mesh : Mesh
+        The surface that was flattened: the object's own, or, with a thickness, the one its skin's middle lies on.
     source : Source
     seams : (k, 2) int64
         Mesh vertex pairs: the edges that are cut.
@@ -52,6 +54,12 @@ class Skin:
     max_distortion : float
         The bound on each piece's mean d that the pieces were cut for.
     seed : int
+    thickness : float, mm
+        Of the skin when it was flattened; 0 where the object's own surface was.
+    neutral : float
+        How far through the skin, from its inner side (0 to 1), the surface lies that bending does not stretch.
+    object_V : (n, 3) float64, mm, optional
+        The object's own vertices, where `mesh` has others.
     """
 
     mesh: Mesh
@@ -63,6 +71,19 @@ class Skin:
     material: str = "carbon-grease-ecoflex"
     max_distortion: float = 4.05
     seed: int = 0
+    thickness: float = 0.0
+    neutral: float = 0.5
+    object_V: NDArray[np.float64] | None = None
+
+    @cached_property
+    def object(self) -> Mesh:
+        """The object itself, with the faces of `mesh`."""
+        return self.mesh if self.object_V is None else Mesh(self.object_V, self.mesh.F, self.mesh.name)
+
+    @property
+    def flattened_at(self) -> float:
+        """How far outside the object the surface lies that was flattened, mm."""
+        return 0.0 if self.object_V is None else self.thickness * self.neutral
 
     def piece(self, id: str) -> Piece:
         """The piece of that id."""

@@ -37,6 +37,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     p.add_argument("-o", "--output", metavar="DIR", type=Path, required=True, help="folder for the results, made if missing")
     p.add_argument("--sensors", metavar="FILE.toml", type=Path, help="which sensors, and where (see docs/sensors.md; default: automatic)")
     steps.add_cut_options(p)
+    steps.add_thickness_options(p, default="what the material profile pours")
     p.add_argument("--json", action="store_true", help="print the report as one JSON object and nothing else")
     p.set_defaults(run=run, wrong_usage=p.error)
 
@@ -129,12 +130,15 @@ def _cut_mesh(args: argparse.Namespace, watch: Stopwatch, progress: Progress) ->
     progress(0.0, "reading")
     with watch.phase("load"):
         loaded = steps.load(args)
+    with watch.phase("segment"):
+        flattened = steps.surface(args, loaded.mesh, usual=used.material.depth)
+        steps.say(flattened.remarks)
     # A cut is judged by flattening as far as it takes; "flatten" drives it to the end.
     with watch.phase("segment"):
-        seams = steps.cut(args, loaded, used, part_of(progress, 0.05, 0.6))
+        seams = steps.cut(args, loaded, flattened.mesh, used, part_of(progress, 0.05, 0.6))
     with watch.phase("flatten"):
-        skin, distortions = steps.to_skin(loaded, seams, used=used, max_distortion=args.max_distortion, seed=args.seed)
-    return skin, distortions, used, loaded.notes
+        skin, distortions = steps.to_skin(loaded, flattened, seams, used=used, max_distortion=args.max_distortion, seed=args.seed)
+    return skin, distortions, used, (*loaded.notes, *flattened.remarks)
 
 
 def _document(args: argparse.Namespace, watch: Stopwatch, progress: Progress) -> Started:
@@ -174,7 +178,7 @@ def _write_moulds(skin: Skin, folder: Path, used: steps.Profiles) -> list[Castin
     folder.mkdir()
     moulds = skin_moulds(skin, material=used.material)
     if not moulds:
-        size = max(skin.mesh.bbox[1] - skin.mesh.bbox[0])
+        size = max(skin.object.bbox[1] - skin.object.bbox[0])
         raise InputError(
             f"every piece is too small to be cast: the object is {size:.3g} mm long; check --units, or scale it up with --scale"
         )

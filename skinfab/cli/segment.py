@@ -20,6 +20,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     steps.add_mesh_options(p)
     p.add_argument("-o", "--output", metavar="OUT.skin", type=steps.named(".skin"), required=True, help="the document to write")
     steps.add_cut_options(p)
+    steps.add_thickness_options(p)
     p.add_argument("--json", action="store_true", help="print one JSON object and nothing else")
     p.set_defaults(run=run, wrong_usage=p.error)
 
@@ -32,19 +33,20 @@ def run(args: argparse.Namespace) -> int:
     from skinfab.seams.cut import seam_length
 
     loaded = steps.load(args)
+    flattened = steps.surface(args, loaded.mesh)
     used = steps.profiles(args.printer)
     with terminal_progress(quiet=args.json) as progress:
-        seams = steps.cut(args, loaded, used, progress)
-    skin, distortions = steps.to_skin(loaded, seams, used=used, max_distortion=args.max_distortion, seed=args.seed)
+        seams = steps.cut(args, loaded, flattened.mesh, used, progress)
+    skin, distortions = steps.to_skin(loaded, flattened, seams, used=used, max_distortion=args.max_distortion, seed=args.seed)
     save_skin(skin, args.output)
     if args.json:
         pieces = [
             {"id": p.id, "n_faces": len(p.F), "size_mm": p.size, "distortion": {"mean": d.mean, "p95": d.p95, "p99": d.p99, "max": d.max}}
             for p, d in zip(skin.pieces, distortions, strict=True)
         ]
-        print(json.dumps({"skin": str(args.output), "seam_mm": seam_length(loaded.mesh, seams.cut), "pieces": pieces}))
+        print(json.dumps({"skin": str(args.output), "seam_mm": seam_length(skin.mesh, seams.cut), "pieces": pieces}))
         return 0
     for line in steps.piece_lines(skin.pieces, distortions):
         print(line)
-    print(f"{args.output}: {steps.counted(len(skin.pieces), 'piece')}, {seam_length(loaded.mesh, seams.cut):.0f} mm of seam")
+    print(f"{args.output}: {steps.counted(len(skin.pieces), 'piece')}, {seam_length(skin.mesh, seams.cut):.0f} mm of seam")
     return 0

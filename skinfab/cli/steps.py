@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from skinfab.flatten.distortion import Distortion
     from skinfab.material import Material
     from skinfab.mesh.io import Loaded
+    from skinfab.mesh.model import Mesh
     from skinfab.pieces import Piece
     from skinfab.placement.sensor import Sensor
     from skinfab.progress import Progress
@@ -38,6 +39,25 @@ def seed(text: str) -> int:
     if not text.isdecimal():
         raise argparse.ArgumentTypeError(f"{text!r} is not a whole number from 0 up")
     return int(text)
+
+
+def not_negative(text: str) -> float:
+    """A finite number from zero up, for argparse."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = -1.0
+    if not 0 <= value < float("inf"):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number from 0 up")
+    return value
+
+
+def share(text: str) -> float:
+    """A number from 0 to 1, for argparse."""
+    value = not_negative(text)
+    if value > 1:
+        raise argparse.ArgumentTypeError(f"{text} is not between 0 (the inner side) and 1 (the outer side)")
+    return value
 
 
 def bound(text: str) -> float:
@@ -76,12 +96,32 @@ def add_cut_options(p: argparse.ArgumentParser) -> None:
     p.add_argument("--seed", type=seed, default=0, help="kept in the document; the same seed gives the same result")
 
 
+def add_thickness_options(p: argparse.ArgumentParser, *, default: str = "0, the object's own surface") -> None:
+    """How thick the skin is, so that it closes without being stretched on."""
+    p.add_argument(
+        "--thickness",
+        type=not_negative,
+        metavar="T",
+        help=f"flatten the surface NEUTRAL x T mm outside the object, on which a skin T mm thick keeps its lengths (default: {default})",
+    )
+    p.add_argument(
+        "--neutral",
+        type=share,
+        default=0.5,
+        help="how far through the skin, from 0 (inner side) to 1, bending stretches nothing (default 0.5)",
+    )
+
+
 def require_fitting_options(args: argparse.Namespace) -> None:
     """Options that do not go together are wrong usage."""
     if args.complete and args.cuts is None:
         args.wrong_usage("--complete goes with --cuts FILE")
-    if args.mesh.suffix.lower() == ".skin" and (args.cuts or args.units or args.repair or args.scale != 1.0):
+    if args.mesh.suffix.lower() != ".skin":
+        return
+    if args.cuts or args.units or args.repair or args.scale != 1.0:
         args.wrong_usage("a skin document is cut and scaled already: --cuts, --units, --scale and --repair go with a mesh")
+    if args.thickness is not None or args.neutral != 0.5:
+        args.wrong_usage("a skin document is flattened already: --thickness and --neutral go with a mesh")
 
 
 def load(args: argparse.Namespace) -> Loaded:
@@ -135,17 +175,42 @@ def limits(max_distortion: float, used: Profiles) -> Limits:
     return Limits(mean=max_distortion, size=(width - rim, depth - rim))
 
 
-def to_skin(loaded: Loaded, found: Seams, *, used: Profiles, max_distortion: float, seed: int) -> tuple[Skin, list[Distortion]]:
+@dataclass(frozen=True)
+class Surface:
+    """What is flattened: the object's own surface, or the one that a skin of some thickness keeps its lengths on."""
+
+    mesh: Mesh
+    thickness: float
+    neutral: float
+    remarks: tuple[str, ...] = ()
+
+
+def surface(args: argparse.Namespace, mesh: Mesh, *, usual: float = 0.0) -> Surface:
+    """The surface that ``--thickness`` asks for; without it, for the usual thickness (mm), and places where that folds are rounded off."""
+    from skinfab.errors import InputError
+    from skinfab.mesh.offset import offset_mesh
+
+    thickness = usual if args.thickness is None else args.thickness
+    try:
+        offset = offset_mesh(mesh, thickness * args.neutral, round_off=args.thickness is None)
+    except InputError as fault:
+        raise InputError(f"--thickness {thickness:g}: {fault}; skinfab make without --thickness rounds such places off") from fault
+    return Surface(offset.mesh, thickness, args.neutral, offset.remarks)
+
+
+def to_skin(
+    loaded: Loaded, flattened: Surface, found: Seams, *, used: Profiles, max_distortion: float, seed: int
+) -> tuple[Skin, list[Distortion]]:
     """The document of a cut mesh without sensors, its pieces flattened to the end, and each piece's distortion in its order."""
     from skinfab.seams.finish import finish
     from skinfab.seams.pieces import to_pieces
     from skinfab.skin import Skin, Source
 
-    topology = loaded.mesh.topology
-    seams = finish(loaded.mesh, found, limits(max_distortion, used))
-    pieces = to_pieces(loaded.mesh, seams.pieces)
+    mesh, topology = flattened.mesh, flattened.mesh.topology
+    seams = finish(mesh, found, limits(max_distortion, used))
+    pieces = to_pieces(mesh, seams.pieces)
     skin = Skin(
-        mesh=loaded.mesh,
+        mesh=mesh,
         source=Source(loaded.file, loaded.sha256, loaded.units, loaded.scale),
         seams=topology.E[seams.cut & ~topology.is_boundary],
         pieces=pieces,
@@ -153,22 +218,25 @@ def to_skin(loaded: Loaded, found: Seams, *, used: Profiles, max_distortion: flo
         material=used.material_name,
         max_distortion=max_distortion,
         seed=seed,
+        thickness=flattened.thickness,
+        neutral=flattened.neutral,
+        object_V=None if mesh is loaded.mesh else loaded.mesh.V,
     )
     by_first_face = {int(piece.faces[0]): verdict.distortion for piece, verdict in seams.pieces}
     return skin, [by_first_face[int(piece.faces[0])] for piece in pieces]
 
 
-def cut(args: argparse.Namespace, loaded: Loaded, used: Profiles, progress: Progress) -> Seams:
-    """Automatic seams, or those that ``--cuts`` gives."""
+def cut(args: argparse.Namespace, loaded: Loaded, mesh: Mesh, used: Profiles, progress: Progress) -> Seams:
+    """Automatic seams of the surface that is flattened, or those that ``--cuts`` gives."""
     from skinfab.seams.auto import find_seams
 
     within = limits(args.max_distortion, used)
     if args.cuts is not None:
-        return _by_hand(args, loaded, within)
-    return find_seams(loaded.mesh, within, neck=used.material.neck, progress=lambda done: progress(done, "cutting and flattening"))
+        return _by_hand(args, loaded, mesh, within)
+    return find_seams(mesh, within, neck=used.material.neck, progress=lambda done: progress(done, "cutting and flattening"))
 
 
-def _by_hand(args: argparse.Namespace, loaded: Loaded, within: Limits) -> Seams:
+def _by_hand(args: argparse.Namespace, loaded: Loaded, mesh: Mesh, within: Limits) -> Seams:
     from skinfab.mesh.io import load_mesh
     from skinfab.seams.auto import Seams
     from skinfab.seams.manual import cut_along, read_cuts, seams_by_hand
@@ -178,10 +246,11 @@ def _by_hand(args: argparse.Namespace, loaded: Loaded, within: Limits) -> Seams:
     # Numbers in the file count the mesh file's vertices, before any cleaning.
     raw = load_mesh(args.mesh, units=args.units, scale=args.scale).mesh
     paths = [raw.V[path] for path in read_cuts(args.cuts, len(raw.V))]
+    # The surface that is flattened has the same vertices and edges, elsewhere.
     by_hand = cut_along(loaded.mesh, paths)
     if not args.complete:
-        return seams_by_hand(loaded.mesh, by_hand, within)
-    seams = Seams(*refine_seams(loaded.mesh, by_hand, within, seam_weights(loaded.mesh)))
+        return seams_by_hand(mesh, by_hand, within)
+    seams = Seams(*refine_seams(mesh, by_hand, within, seam_weights(mesh)))
     added = int((seams.cut & ~by_hand).sum())
     say([f"{added} edges were cut beyond those given by hand"] if added else [])
     return seams
@@ -203,8 +272,8 @@ def place_sensors(skin: Skin, material: Material, file: Path | None) -> tuple[tu
     from skinfab.placement.requested import place_from_file
 
     if file is None:
-        sensors, warnings = place(skin.mesh, skin.pieces, material=material, seed=skin.seed)
+        sensors, warnings = place(skin.object, skin.pieces, material=material, seed=skin.seed)
     else:
-        sensors, warnings = place_from_file(file, skin.mesh, skin.pieces, material=material, seed=skin.seed)
+        sensors, warnings = place_from_file(file, skin.object, skin.pieces, material=material, seed=skin.seed)
     validate(replace(skin, sensors=tuple(sensors)), material)
     return tuple(sensors), list(warnings)

@@ -149,11 +149,11 @@ def test_the_document_makes_the_same_gcode_again(tmp_path: Path) -> None:
 
 def test_a_document_in_place_of_a_mesh(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     mesh, skin = str(ROOT / "meshes/cube.obj"), str(tmp_path / "cube.skin")
-    assert main(["segment", mesh, "-o", skin]) == 0
+    assert main(["segment", mesh, "-o", skin, "--thickness", "2.5"]) == 0
     assert main(["make", skin, "-o", str(tmp_path / "from_skin")]) == 0
     assert main(["make", mesh, "-o", str(tmp_path / "from_mesh")]) == 0
     one, two = (tmp_path / name for name in ("from_skin", "from_mesh"))
-    for file in ("gcode/P1.gcode", "mould/P1.stl", "flat.obj", "flat.svg"):
+    for file in ("gcode/P1.gcode", "mould/P1.stl", "flat.obj", "flat.svg", "skin.skin"):
         assert (one / file).read_bytes() == (two / file).read_bytes()
     assert main(["make", str(one / "skin.skin"), "-o", str(tmp_path / "again")]) == 0  # its sensors are kept
     assert (tmp_path / "again/gcode/P1.gcode").read_bytes() == (one / "gcode/P1.gcode").read_bytes()
@@ -191,7 +191,8 @@ def test_sensors_from_a_file(tmp_path: Path) -> None:
 def test_a_scaled_object_scales_its_skin(tmp_path: Path) -> None:
     areas = []
     for scale in ("1", "1.5"):
-        assert main(["make", str(ROOT / "meshes/cube.obj"), "-o", str(tmp_path / scale), "--scale", scale]) == 0
+        words = ["make", str(ROOT / "meshes/cube.obj"), "-o", str(tmp_path / scale), "--scale", scale, "--thickness", "0"]
+        assert main(words) == 0
         areas.append(sum(p["area_mm2"] for p in results.read_report(tmp_path / scale)["pieces"]))
     assert areas[1] / areas[0] == pytest.approx(1.5**2, rel=1e-9)
 
