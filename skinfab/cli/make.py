@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from skinfab.flatten.distortion import Distortion
     from skinfab.mould import CastingMould
     from skinfab.progress import Progress, Stopwatch
+    from skinfab.report.strains import SensorStrains
     from skinfab.skin import Skin
 
 Started: TypeAlias = "tuple[Skin, list[Distortion], steps.Profiles, tuple[str, ...]]"
@@ -30,8 +31,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "make",
         help="mesh in, everything out: seams, flat pieces, sensors, G-code, moulds, report",
         description="From a mesh to a skin ready to be cast and printed. DIR gets skin.skin, report.json, report.html, preview.png, "
-        "flat.svg, flat.dxf, flat.obj, wiring.csv, gcode/PIECE.gcode and mould/PIECE.stl. In place of a mesh, a skin document may be given: its "
-        "seams, and its sensors where it has any, are taken as they are.",
+        "flat.svg, flat.dxf, flat.obj, wrap_strain.svg, wiring.csv, gcode/PIECE.gcode and mould/PIECE.stl. In place of a mesh, a skin "
+        "document may be given: its seams, and its sensors where it has any, are taken as they are.",
     )
     steps.add_mesh_options(p)
     p.add_argument("-o", "--output", metavar="DIR", type=Path, required=True, help="folder for the results, made if missing")
@@ -76,6 +77,7 @@ def _make(args: argparse.Namespace, folder: Path, watch: Stopwatch, progress: Pr
     from skinfab.mould import can_be_cast
     from skinfab.progress import peak_rss_mb
     from skinfab.report.build import build_report, write_report
+    from skinfab.report.strains import sensor_strains
     from skinfab.wiring import wiring, write_wiring
 
     start = _document if args.mesh.suffix.lower() == ".skin" else _cut_mesh
@@ -101,8 +103,9 @@ def _make(args: argparse.Namespace, folder: Path, watch: Stopwatch, progress: Pr
     progress(0.9, "drawing")
     with watch.phase("draw"):
         save_skin(skin, folder / "skin.skin")
-        _write_drawings(skin, folder)
+        _write_drawings(skin, folder, moulds)
         write_wiring(wiring(skin, used.material), folder / "wiring.csv")
+    strains = sensor_strains(skin, used.material, conductor_mm=used.printer.heights.print)
     report = build_report(
         skin,
         distortions,
@@ -113,9 +116,10 @@ def _make(args: argparse.Namespace, folder: Path, watch: Stopwatch, progress: Pr
         timing_s=watch.timing_s(),
         peak_rss_mb=peak_rss_mb(),
         warnings=[*notes, *warnings, *remarks, *(flaw for m in moulds for flaw in m.warnings), *uncast],
+        strains=strains,
     )
     with watch.phase("draw"):
-        _write_pictures(skin, distortions, report, folder)
+        _write_pictures(skin, distortions, strains, report, folder)
     # The pictures take a while, and the report says how long all of it took.
     report |= {"timing_s": watch.timing_s(), "peak_rss_mb": peak_rss_mb()}
     write_report(report, folder / "report.json")
@@ -187,13 +191,15 @@ def _write_moulds(skin: Skin, folder: Path, used: steps.Profiles) -> list[Castin
     return moulds
 
 
-def _write_drawings(skin: Skin, folder: Path) -> None:
+def _write_drawings(skin: Skin, folder: Path, moulds: list[CastingMould]) -> None:
     from skinfab.drawings.dxf import write_dxf
     from skinfab.drawings.obj import write_flat_obj
+    from skinfab.drawings.pdf import write_pdf
     from skinfab.drawings.sheet import sheet_offsets
     from skinfab.drawings.svg import write_svg
 
     write_svg(skin, folder / "flat.svg")
+    write_pdf(skin, folder / "flat.pdf", moulds=moulds)
     write_dxf(skin, folder / "flat.dxf")
     write_flat_obj(skin.mesh, skin.pieces, sheet_offsets(skin.pieces), folder / "flat.obj")
 
@@ -224,10 +230,16 @@ def _recipe(moulds: list[CastingMould], printed: Sequence[PieceGcode], used: ste
     return weighed.as_dict() | {"steps": work_steps(weighed, used.material, jobs=jobs, home=used.printer.home)}
 
 
-def _write_pictures(skin: Skin, distortions: list[Distortion], report: dict[str, Any], folder: Path) -> None:
+def _write_pictures(skin: Skin, distortions: list[Distortion], strains: SensorStrains, report: dict[str, Any], folder: Path) -> None:
     from skinfab.report.html import write_html
     from skinfab.report.preview import draw_preview
+    from skinfab.report.strain_picture import write_strain_picture
 
     draw_preview(skin, distortions, report, folder / "preview.png")
-    pictures = {"The skin at a glance": folder / "preview.png", "The flat pieces, to scale": folder / "flat.svg"}
+    write_strain_picture(skin, strains, folder / "wrap_strain.svg")
+    pictures = {
+        "The skin at a glance": folder / "preview.png",
+        "The flat pieces, to scale": folder / "flat.svg",
+        "What wearing stretches (red) and squeezes (blue)": folder / "wrap_strain.svg",
+    }
     write_html(report, folder / "report.html", pictures=pictures)

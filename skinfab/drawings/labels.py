@@ -119,14 +119,16 @@ def _sensor(sensor: Sensor, inside: shapely.Polygon, ink: shapely.MultiLineStrin
     turn = np.array([away, [-away[1], away[0]]])
     places = middle + radius.reshape(-1, 1) * (along @ turn)
     cost = radius.ravel() + _BEHIND_MM * (1 - along[:, 0]) / 2
-    tries = [Label("sensor", sensor.id, places[k]) for k in np.argsort(cost.round(6), kind="stable")]
-    boxes = np.array([label.box for label in tries])
-    clear = shapely.distance(boxes, ink) >= bead / 2 + _CLEAR_MM
+    places = places[np.argsort(cost.round(6), kind="stable")]
+    half = np.array([Label("sensor", sensor.id, middle).width, TEXT_MM]) / 2
+    boxes = shapely.box(*(places - half).T, *(places + half).T)
+    shapely.prepare(ink)
+    clear = ~shapely.dwithin(ink, boxes, bead / 2 + _CLEAR_MM)
     clear &= ~shapely.intersects(boxes, shapely.MultiPolygon([label.box for label in there]).buffer(0))
     best = clear & shapely.contains(inside, boxes)
     # Over the outline if need be; on ink only where there is nothing else for 15 mm round.
     choice = best if best.any() else clear
-    return tries[int(np.argmax(choice))]
+    return Label("sensor", sensor.id, places[int(np.argmax(choice))])
 
 
 def _seam(side: SeamSide, inside: shapely.Polygon, ink: shapely.MultiLineString, bead: float, there: Sequence[Label]) -> Label | None:
