@@ -69,9 +69,7 @@ class BffSolver:
     def __init__(self, V: FloatArray, F: NDArray[np.int64], *, topology: Topology | None = None, robust: bool = False) -> None:
         topology = topology or Topology(F)
         self.boundary = loop = require_disk(topology, len(V))
-        if not np.isfinite(V).all():
-            wrong = int(np.flatnonzero(~np.isfinite(V).all(axis=1))[0])
-            raise InputError(f"vertex {wrong} has a coordinate that is not a finite number; mend it in the mesh")
+        require_finite(V)
         corners = _delaunay(V, F, topology) if robust else intrinsic(V, F)
         self._V, self._F = V, F
         self.lengths_mm = np.linalg.norm(V[np.roll(loop, -1)] - V[loop], axis=1)
@@ -289,3 +287,10 @@ def require_disk(topology: Topology, n_vertices: int) -> NDArray[np.int64]:
             f"{topology.euler} and {unused} unused vertices; cut it first (skinfab segment)"
         )
     return loops[0]
+
+
+def require_finite(V: FloatArray) -> None:
+    """InputError names the first vertex (n, 3) with a coordinate that is no finite number."""
+    finite = np.isfinite(V).all(axis=1)
+    if not finite.all():
+        raise InputError(f"vertex {int(np.argmin(finite))} has a coordinate that is not a finite number; mend it in the mesh")

@@ -1,7 +1,8 @@
 """Cone singularities: take the curvature in at a few points and cut through them (BFF, section 5).
 
 With u = 0 at the cones and on the boundary, u is the scale that lays everything else flat; the cone angles
-follow from it. A cone put where |u| is largest takes most area distortion away.
+follow from it. A cone put where |u| is largest takes most area distortion away. Where the cone angles are given
+instead, u is free at the cones and follows from the angles.
 """
 
 from __future__ import annotations
@@ -11,10 +12,11 @@ from numpy.typing import NDArray
 from scipy.sparse import csc_array
 
 from skinfab.errors import InputError
+from skinfab.flatten.bff import require_finite
 from skinfab.flatten.laplacian import intrinsic
 from skinfab.linalg import Cholesky
 from skinfab.mesh.topology import Topology
-from skinfab.tolerances import FLAT_SCALE
+from skinfab.tolerances import FLAT_SCALE, TURNING_SUM_RAD
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -40,6 +42,11 @@ class ConeField:
         One component, every vertex in use.
     topology : Topology
 
+    Raises
+    ------
+    InputError
+        A coordinate is not finite.
+
     Attributes
     ----------
     u : (n,) float
@@ -49,19 +56,16 @@ class ConeField:
     """
 
     def __init__(self, V: FloatArray, F: IntArray, topology: Topology) -> None:
+        require_finite(V)
         corners = intrinsic(V, F)
         defect = 2 * np.pi - corners.angle_sum
-        fixed = np.zeros(len(V), dtype=bool)
-        fixed[topology.E[topology.is_boundary].ravel()] = True
+        fixed = _on_boundary(topology, len(V))
         self.cones: list[int] = []
         if not fixed.any():
             self.cones.append(int(np.argmax(np.abs(defect))))
             fixed[self.cones] = True
         self.sharpness = np.where(fixed, 0.0, np.abs(defect))
-        area = np.bincount(
-            F.ravel(), np.repeat(np.linalg.norm(np.cross(V[F[:, 1]] - V[F[:, 0]], V[F[:, 2]] - V[F[:, 0]]), axis=1), 3), len(V)
-        )
-        self._share = area / area.sum()
+        self._share = _area_share(V, F)
         self._free = free = np.flatnonzero(~fixed)
         self._row = np.cumsum(~fixed) - 1
         L = corners.stiffness()
@@ -111,7 +115,9 @@ class ConeField:
         return x
 
 
-def cone_scale(V: FloatArray, F: IntArray, cones: IntArray, *, topology: Topology | None = None) -> tuple[FloatArray, FloatArray]:
+def cone_scale(
+    V: FloatArray, F: IntArray, cones: IntArray, angles: FloatArray | None = None, *, topology: Topology | None = None
+) -> tuple[FloatArray, FloatArray]:
     """Log scale factors that flatten everything but the cones, and the cones' curvature.
 
     Parameters
@@ -120,34 +126,112 @@ def cone_scale(V: FloatArray, F: IntArray, cones: IntArray, *, topology: Topolog
     F : (m, 3) int64
         One component, every vertex in use.
     cones : (c,) int64
-        Vertices; at least one when the mesh is closed.
+        Inner vertices, each once; at least one when the mesh is closed.
+    angles : (c,) float, rad, optional
+        Cone angles: the corners about the cone, added up in the flat layout; 2 pi minus its curvature. 3/2 pi is a
+        cube's corner, 2 pi no cone at all. On a closed mesh they sum to 2 pi times the number of cones less the Euler
+        number (Gauss-Bonnet); on an open one the boundary turns by what they leave over. Default: u = 0 at the cones.
 
     Returns
     -------
     u : (n,) float
-        Zero at cones and on the boundary.
+        Zero on the boundary; zero at cones without given angles. On a closed mesh with angles of area-weighted mean zero.
     curvature : (c,) float, rad
         2 pi minus the cone's angle. With the boundary's turning they sum to 2 pi times the Euler number.
 
     Raises
     ------
     InputError
-        A closed mesh without cones: there is nowhere for its curvature to go.
+        A coordinate is not finite; a cone is no vertex, on the boundary or given twice; a closed mesh without cones
+        (there is nowhere for its curvature to go); not one angle for each cone, one that is not positive, or angles
+        that a closed surface cannot have.
+
+    Examples
+    --------
+    >>> V = np.array([[0.0, 0, 0], [1, 1, 0], [1, 0, 1], [0, 1, 1]])
+    >>> F = np.array([[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]])
+    >>> u, curvature = cone_scale(V, F, np.arange(4), np.full(4, np.pi))
+    >>> bool(np.abs(u).max() < 1e-9), np.degrees(curvature).round(6).tolist()
+    (True, [180.0, 180.0, 180.0, 180.0])
     """
+    require_finite(V)
     topology = topology or Topology(F)
-    fixed = np.zeros(len(V), dtype=bool)
-    fixed[topology.E[topology.is_boundary].ravel()] = True
-    fixed[cones] = True
-    if not fixed.any():
-        raise InputError("a closed mesh needs at least one cone; use --cones 8, --cones auto or a list of vertices")
+    pinned = _on_boundary(topology, len(V))
+    closed = not pinned.any()
+    cones = _checked_cones(cones, pinned)
     corners = intrinsic(V, F)
     L = corners.stiffness()
     defect = 2 * np.pi - corners.angle_sum
-    free = np.flatnonzero(~fixed)
+    left = np.zeros(len(V))
+    if angles is None:
+        pinned[cones] = True
+    else:
+        left[cones] = 2 * np.pi - _checked_angles(angles, len(cones), topology.euler if closed else None)
+        # Curvature fixes u up to a constant only.
+        pinned[cones[:1]] |= closed
+    free = np.flatnonzero(~pinned)
     u = np.zeros(len(V))
     if len(free):
-        u[free] = Cholesky(csc_array(L[free][:, free])).solve(-defect[free])
+        u[free] = Cholesky(csc_array(L[free][:, free])).solve((left - defect)[free])
+    if closed and angles is not None:
+        u -= _area_share(V, F) @ u
     return u, defect[cones] + (L @ u)[cones]
+
+
+def _checked_cones(cones: IntArray, boundary: NDArray[np.bool_]) -> IntArray:
+    cones = np.asarray(cones)
+    if not cones.size:
+        if not boundary.any():
+            raise InputError("a closed mesh needs at least one cone; use --cones 8, --cones auto or a list of vertices")
+        return np.zeros(0, dtype=np.int64)
+    if cones.ndim != 1 or not np.issubdtype(cones.dtype, np.integer):
+        raise InputError(f"cones are vertices, an array (c,) of whole numbers; this is {cones.dtype} of the shape {cones.shape}")
+    if missing := [int(c) for c in cones if not 0 <= c < len(boundary)]:
+        raise InputError(f"cone vertex {missing[0]} does not exist; the mesh has vertices 0 to {len(boundary) - 1}")
+    vertex, times = np.unique(cones, return_counts=True)
+    if (times > 1).any():
+        raise InputError(f"cone vertex {vertex[times > 1][0]} is given {times[times > 1][0]} times; give every cone once")
+    if boundary[cones].any():
+        raise InputError(f"cone vertex {cones[boundary[cones]][0]} lies on the boundary, which is no place for a cone; give inner vertices")
+    return cones.astype(np.int64, copy=False)
+
+
+def _checked_angles(angles: FloatArray, n_cones: int, euler: int | None) -> FloatArray:
+    """The angles, if a surface can have them; `euler` is the Euler number of a closed one."""
+    angles = np.asarray(angles, dtype=np.float64)
+    if angles.shape != (n_cones,):
+        raise InputError(f"cone angles are one number for each of the {n_cones} cones; this has the shape {angles.shape}")
+    wrong = np.flatnonzero(~(np.isfinite(angles) & (angles > 0)))
+    if len(wrong):
+        raise InputError(f"cone angle {wrong[0]} is {np.degrees(angles[wrong[0]]):.9g} degrees; give more than 0, 360 being flat")
+    if euler is None:
+        return angles
+    due, got = 360 * (n_cones - euler), float(np.degrees(angles.sum()))
+    if due <= 0:
+        raise InputError(
+            f"{n_cones} cones cannot take the curvature of a closed surface of Euler number {euler} at positive angles; "
+            f"give {euler + 1} or more"
+        )
+    if not abs(got - due) <= np.degrees(TURNING_SUM_RAD):
+        raise InputError(
+            f"the cone angles sum to {got:.9g} degrees; {n_cones} cones on a closed surface of Euler number {euler} "
+            f"must sum to {due} (Gauss-Bonnet), so change them by {due - got:+.9g} together"
+        )
+    return angles
+
+
+def _on_boundary(topology: Topology, n_vertices: int) -> NDArray[np.bool_]:
+    on = np.zeros(n_vertices, dtype=bool)
+    on[topology.E[topology.is_boundary].ravel()] = True
+    return on
+
+
+def _area_share(V: FloatArray, F: IntArray) -> FloatArray:
+    """(n,) each vertex's part of the area, 1 together."""
+    twice = np.linalg.norm(np.cross(V[F[:, 1]] - V[F[:, 0]], V[F[:, 2]] - V[F[:, 0]]), axis=1)
+    area = np.bincount(F.ravel(), np.repeat(twice, 3), len(V))
+    share: FloatArray = area / area.sum()
+    return share
 
 
 def place_cones(V: FloatArray, F: IntArray, *, count: int | None = None, topology: Topology | None = None) -> IntArray:
@@ -172,7 +256,7 @@ def place_cones(V: FloatArray, F: IntArray, *, count: int | None = None, topolog
     Raises
     ------
     InputError
-        `count` is not positive.
+        `count` is not positive, or a coordinate is not finite.
 
     Examples
     --------

@@ -1,4 +1,8 @@
-"""Flatten with cones: cut through them by short seams, then lay out with the scale factors they imply."""
+"""Flatten with cones: cut through them by short seams, then lay out with the scale factors they imply.
+
+Meant for near-polyhedra, whose corners the cones are, and for comparison with other tools. The net of a rounded or
+ragged object often covers itself or turns triangles over, which nothing here mends: `seams.auto` is for those.
+"""
 
 from __future__ import annotations
 
@@ -16,6 +20,7 @@ from skinfab.seams.graph import edge_graph, shortest_tree, trace
 from skinfab.seams.weights import seam_weights
 
 BoolArray = NDArray[np.bool_]
+FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 
@@ -30,6 +35,11 @@ def cut_through(mesh: Mesh, points: IntArray) -> BoolArray:
         One component.
     points : (c,) int64
         Vertices.
+
+    Raises
+    ------
+    InputError
+        A point cannot be reached from the others.
     """
     topology, weight = mesh.topology, seam_weights(mesh)
     cut = np.zeros(len(topology.E), dtype=bool)
@@ -45,6 +55,9 @@ def cut_through(mesh: Mesh, points: IntArray) -> BoolArray:
     while left:
         distance, before = shortest_tree(graph, np.flatnonzero(seam))
         nearest = min(left, key=lambda p: (distance[p], p))
+        if not np.isfinite(distance[left]).all():
+            lost = next(p for p in left if not np.isfinite(distance[p]))
+            raise InputError(f"no seam leads to vertex {lost} along edges of finite length; mend the mesh, or give points of one component")
         path = trace(before, nearest)
         cut[topology.edge_ids(path)] = True
         seam[path.ravel()] = True
@@ -53,8 +66,8 @@ def cut_through(mesh: Mesh, points: IntArray) -> BoolArray:
 
 
 def flatten_with_cones(
-    mesh: Mesh, *, cones: IntArray | None = None, count: int | None = None
-) -> tuple[BoolArray, OpenPiece, NDArray[np.float64], IntArray]:
+    mesh: Mesh, *, cones: IntArray | None = None, angles: FloatArray | None = None, count: int | None = None
+) -> tuple[BoolArray, OpenPiece, FloatArray, IntArray]:
     """Boundary first flattening with cone singularities.
 
     Parameters
@@ -62,7 +75,9 @@ def flatten_with_cones(
     mesh : Mesh
         One component, manifold; closed or open.
     cones : (c,) int64, optional
-        Vertices, each once. Default: placed automatically.
+        Inner vertices, each once. Default: placed automatically.
+    angles : (c,) float, rad, optional
+        Cone angles of the given cones (2 pi minus their curvature); see `cone_scale`. Default: those of least area distortion.
     count : int, optional
         How many to place; default as many as pay (`place_cones`).
 
@@ -77,7 +92,7 @@ def flatten_with_cones(
     Raises
     ------
     InputError
-        Several components, or a cone that is no vertex or given twice.
+        Several components, angles without cones, or what `cone_scale` does not take.
     RefusedError
         Triangles come out upside down or without area, over the intrinsic Delaunay triangulation too.
     """
@@ -85,28 +100,20 @@ def flatten_with_cones(
     if topology.face_components()[0] != 1:
         raise InputError("cones need one connected surface; use --method auto for several components")
     if cones is None:
+        if angles is not None:
+            raise InputError("cone angles are of given cones; say which vertices they belong to")
         cones = place_cones(mesh.V, mesh.F, count=count, topology=topology)
-    else:
-        _require_vertices(cones, len(mesh.V))
+    u, _ = cone_scale(mesh.V, mesh.F, cones, angles, topology=topology)
     cut = cut_through(mesh, cones)
     (piece,) = open_pieces(mesh, cut)
     if not piece.is_disk:
         raise InputError("a closed surface needs at least two cones to open it; use --cones 8 or --cones auto")
-    u, _ = cone_scale(mesh.V, mesh.F, cones, topology=topology)
     V = mesh.V[piece.vertices]
     uv = flatten_robust(V, piece.F, scale=u[piece.vertices], topology=piece.topology)
     _, shaped = shaped_areas(V, piece.F)
     if over := turned_over(uv, piece.F[shaped]):
         raise RefusedError(
-            f"{over} of {len(mesh.F)} triangles come out upside down or without area with {len(cones)} cones; "
-            f"use other cones, a remeshed surface or --method auto"
+            f"{over} of {len(mesh.F)} triangles come out upside down or without area with {len(cones)} cones, "
+            f"which suit near-polyhedra only; use --method auto, or other cones"
         )
     return cut, piece, uv * best_scale(V, piece.F, uv), cones
-
-
-def _require_vertices(cones: IntArray, n_vertices: int) -> None:
-    if missing := [int(c) for c in cones if not 0 <= c < n_vertices]:
-        raise InputError(f"cone vertex {missing[0]} does not exist; the mesh has vertices 0 to {n_vertices - 1}")
-    vertex, times = np.unique(cones, return_counts=True)
-    if (times > 1).any():
-        raise InputError(f"cone vertex {vertex[times > 1][0]} is given {times[times > 1][0]} times; give every cone once")

@@ -145,8 +145,29 @@ def test_cones_on_a_crumpled_ball_are_refused(tmp_path: Path, capsys: pytest.Cap
     (tmp_path / "ball.obj").write_text("\n".join(lines) + "\n")
     words = ["flatten", str(tmp_path / "ball.obj"), "-o", str(tmp_path / "o.obj"), "--method", "bff-cones", "--cones", "8"]
     assert main(words) == 3
-    assert "triangles come out upside down or without area with 8 cones; use other cones" in capsys.readouterr().err
+    assert (
+        "triangles come out upside down or without area with 8 cones, which suit near-polyhedra only; use --method auto"
+        in capsys.readouterr().err
+    )
     assert not (tmp_path / "o.obj").exists()
+
+
+def test_a_vertex_that_is_no_number_ends_no_cone_in_a_hang() -> None:
+    """No path leads to it, so joining it to the seam never ended."""
+    V, F = shapes.sphere(3)
+    V[5] = np.nan
+    mesh = Mesh(V, F)
+    calls = [
+        lambda: place_cones(V, F, count=8),
+        lambda: cone_scale(V, F, np.array([0, 1])),
+        lambda: flatten_with_cones(mesh, count=8),
+        lambda: flatten_with_cones(mesh, cones=np.array([5, 9, 70])),
+    ]
+    for call in calls:
+        with pytest.raises(InputError, match="vertex 5 has a coordinate that is not a finite number"):
+            call()
+    with pytest.raises(InputError, match="no seam leads to vertex 5 along edges of finite length"):
+        cut_through(mesh, np.array([9, 5, 70]))
 
 
 SHARED = Path(__file__).resolve().parents[2].parent / "shared" / "meshes"
