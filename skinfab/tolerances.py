@@ -17,6 +17,12 @@ DEGENERATE_HEIGHT = 1e-10
 #: Overlap of a flat piece is nothing when under this fraction of the piece's area.
 OVERLAP_FRACTION = 1e-6
 
+#: A layout whose mean d is larger is refused: lengths are off a thousand times, and written digits no longer tell triangles apart.
+WILD_DISTORTION = 1e6
+
+#: Barycentric weights of a point must sum to 1 within this.
+WEIGHT_SUM = 1e-6
+
 #: Mould cavity volume must equal area x depth within this fraction.
 CAVITY_FRACTION = 0.005
 
@@ -106,6 +112,9 @@ CAUTION_WRAP_STRAIN = 0.10
 #: A sensor is asked for at a point no farther from the surface than this fraction of the object's diagonal: points read off a
 #: screen or a drawing miss by less, and those of another scale, unit or origin by far more.
 POINT_FRACTION = 0.05
+
+#: A joint lies inside the object, so it may be farther from the surface: by this fraction of the diagonal.
+JOINT_FRACTION = 0.5
 
 #: Objects outside this range are mistakes of units: squares and products of their lengths leave the range of numbers.
 SMALLEST_OBJECT_MM = 1e-9

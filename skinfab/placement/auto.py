@@ -15,7 +15,6 @@ from skinfab.errors import InputError
 from skinfab.material import Material
 from skinfab.mesh.model import Mesh
 from skinfab.patterns.contact_spiral import ContactSpiral
-from skinfab.patterns.registry import PATTERNS
 from skinfab.patterns.strain_lines import StrainLines
 from skinfab.pieces import Piece
 from skinfab.placement.fill import Region, fill, regions_of
@@ -28,6 +27,8 @@ from skinfab.placement.space import Footprint, Space, need_of
 SEED_SIZES = (45.0, 38.0, 32.0, 22.0, 20.0, 15.0, 10.0)
 #: Of these, a second sensor beside another is at least this large, mm: smaller ones are for places where nothing else fits.
 _BESIDE_SIZE = 15.0
+#: What it places by itself: it knows how to choose their sizes.
+_KINDS = (ContactSpiral.kind, StrainLines.kind)
 
 
 @dataclass(frozen=True)
@@ -45,14 +46,14 @@ class AutoOptions:
         Without it `share.default_number` decides, and there are no more than the readout has channels.
     """
 
-    kinds: tuple[str, ...] = (ContactSpiral.kind, StrainLines.kind)
+    kinds: tuple[str, ...] = _KINDS
     sizes: tuple[float, ...] = SEED_SIZES
     per_piece: int | None = None
 
     def __post_init__(self) -> None:
         for kind in self.kinds:
-            if kind not in PATTERNS:
-                raise InputError(f"automatic placement knows no kind {kind!r}; there are {', '.join(sorted(PATTERNS))}")
+            if kind not in _KINDS:
+                raise InputError(f"automatic placement knows no kind {kind!r}; there are {', '.join(_KINDS)}; ask for others one by one")
         if not self.sizes or not all(np.isfinite(s) and s > 0 for s in self.sizes):
             raise InputError(f"automatic placement: sizes are {list(self.sizes)}; give one or more diameters above 0 mm")
         if self.per_piece is not None and self.per_piece < 1:
@@ -132,7 +133,7 @@ class Namer:
 
     def add(self, space: Space, sensor: Sensor) -> Sensor:
         """Give a sensor the next free id of its kind and the next free channel, and put it on its piece."""
-        letter = "S" if sensor.pattern.kind == StrainLines.kind else "C"
+        letter = sensor.pattern.senses[0].upper()
         ids, channels = {s.id for s in self.sensors}, {s.channel for s in self.sensors}
         id = next(f"{letter}{k}" for k in range(1, len(ids) + 2) if f"{letter}{k}" not in ids)
         channel = next(k for k in range(len(channels) + 1) if k not in channels)

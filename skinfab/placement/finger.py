@@ -1,8 +1,9 @@
-"""Strain sensors for fingers: along the finger, across its middle joint."""
+"""Strain sensors: along what bends, across its joint; a finger's middle one unless a joint is named."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 from skinfab.errors import InputError
 from skinfab.material import Material
 from skinfab.mesh.model import Mesh
+from skinfab.patterns.base import Pattern
 from skinfab.patterns.strain_lines import StrainLines
 from skinfab.placement.search import Poses, first_fit, poses_around
 from skinfab.placement.sensor import Sensor
@@ -26,13 +28,51 @@ _FINGER_SLENDERNESS = 2.0
 _SEED_SIZES = ((60.0, 54.0, 6.0), (53.0, 43.0, 6.0))
 #: Then the human one made smaller.
 _SMALLER = (0.85, 0.7, 0.6, 0.5, 0.4, 0.32)
-#: The joint lies within the middle part of the loops: this fraction of l2 to either side.
+#: The joint lies within the middle part of what senses: this fraction of its span to either side.
 _SPAN = 0.25
 #: Angles tried off the finger's axis as it runs on the flat piece, rad.
 _TURNS = tuple(np.deg2rad([0.0, 5.0, -5.0, 10.0, -10.0]))
 _PLACES = 1500
 #: Places are compared by room to spare among those equally near to the joint, in steps of this, mm.
 _NEARNESS = 3.0
+#: A place faces a direction where the surface's normal is no farther from it than this: cosine of 45 degrees.
+_FACING = 0.5**0.5
+
+
+@dataclass(frozen=True, eq=False)
+class Joint:
+    """Where something bends, and how.
+
+    Parameters
+    ----------
+    at : (3,) float, mm
+        A point of the joint: inside it, or on the side of it that the sensor is to be on.
+    along : (3,) float
+        Direction that is stretched by bending, of length 1.
+    facing : (3,) float, optional
+        The sensor goes where the surface faces this way, to 45 degrees: the back of a finger, for instance. Of length 1.
+    near : bool
+        Whether places near `at` come first; otherwise all those at its height are equal.
+    """
+
+    at: Array
+    along: Array
+    facing: Array | None = None
+    near: bool = True
+
+    @staticmethod
+    def middle_of(mesh: Mesh, *, facing: Array | None = None) -> Joint:
+        """Half-way along the object's long axis: the middle joint of a finger, for want of more knowledge."""
+        axis = long_axis(mesh)[0][0]
+        along = mesh.V[np.unique(mesh.F)] @ axis
+        return Joint((along.min() + along.max()) / 2 * axis, axis, facing, near=False)
+
+
+def facing_faces(mesh: Mesh, space: Space, facing: Array | None) -> NDArray[np.bool_]:
+    """Which faces of a piece look in a direction, (k,) bool; all of them for None."""
+    if facing is None:
+        return np.ones(len(space.piece.F), dtype=bool)
+    return np.asarray(mesh.face_normals[space.piece.faces] @ facing >= _FACING)
 
 
 def long_axis(mesh: Mesh) -> tuple[Array, Array]:
@@ -77,60 +117,97 @@ def strain_sizes(material: Material) -> Iterator[StrainLines]:
 
 
 def place_strain(
-    mesh: Mesh, spaces: Sequence[Space], patterns: Sequence[StrainLines], *, material: Material, rng: np.random.Generator
+    mesh: Mesh,
+    spaces: Sequence[Space],
+    patterns: Sequence[Pattern],
+    *,
+    material: Material,
+    rng: np.random.Generator,
+    joint: Joint | None = None,
 ) -> Sensor | None:
-    """One strain sensor, the first of `patterns` that fits, along the long axis with its loops across the middle of the length.
+    """One strain sensor, the first of `patterns` that fits, along what is stretched and with its span across the joint.
 
-    The middle stands for the middle joint for want of more knowledge. The axis is pulled back to the flat
-    piece by the flattening's Jacobian where the sensor lies.
+    The direction is pulled back to the flat piece by the flattening's Jacobian where the sensor lies.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    spaces : sequence of Space
+    patterns : sequence of Pattern
+    material : Material
+    rng : Generator
+    joint : Joint, optional
+        Else half-way along the long axis.
 
     Returns
     -------
     Sensor or None
         With its id and channel still open; None where none fits.
     """
-    axis = long_axis(mesh)[0][0]
-    along = mesh.V[np.unique(mesh.F)] @ axis
-    joint = (along.min() + along.max()) / 2
-    band = max((p.l2 for p in patterns), default=0.0) * _SPAN
-    near = [_places_near(mesh, space, axis, joint, band=band, rng=rng) for space in spaces]
+    joint = joint or Joint.middle_of(mesh)
+    band = max((p.span for p in patterns), default=0.0) * _SPAN
+    near = _places_near(mesh, spaces, joint, band=band, rng=rng)
     for pattern in patterns:
         footprint = Footprint.of(pattern)
         best: list[tuple[float, float, int, Poses, int]] = []
-        for which, (space, (places, directions, offsets)) in enumerate(zip(spaces, near, strict=True)):
-            ok = np.abs(offsets) <= _SPAN * pattern.l2
+        for which, (space, found) in enumerate(zip(spaces, near, strict=True)):
+            ok = np.abs(found.offsets) <= _SPAN * pattern.span
             if not ok.any():
                 continue
             for turn in (*_TURNS, *(t + np.pi for t in _TURNS)):
-                poses = poses_around(space.raster, footprint, places[ok], directions[ok] + turn, need=need_of(pattern, material))
-                nearness = np.floor(np.abs(offsets[ok]) / _NEARNESS)
+                need = need_of(pattern, material)
+                poses = poses_around(space.raster, footprint, found.places[ok], found.directions[ok] + turn, need=need)
+                nearness = np.floor(found.away[ok] / _NEARNESS)
                 k = np.lexsort((-poses.slack, nearness))
                 k = k[poses.slack[k] > -space.raster.step][:3]
                 best += [(nearness[i], -poses.slack[i], which, poses, int(i)) for i in k]
         for _, _, which, poses, i in sorted(best, key=lambda c: c[:3])[:24]:
-            found = first_fit(spaces[which], pattern, footprint, poses, [i], between_creases=False)
-            if found:
-                return found
+            sensor = first_fit(spaces[which], pattern, footprint, poses, [i], between_creases=False)
+            if sensor:
+                return sensor
     return None
 
 
-def _places_near(
-    mesh: Mesh, space: Space, axis: Array, joint: float, *, band: float, rng: np.random.Generator
-) -> tuple[Array, Array, Array]:
-    """Places (n, 2) mm on a piece no more than `band` from the joint, the axis' direction there (n,) rad, the offset (n,) mm."""
+@dataclass(frozen=True, eq=False)
+class _Near:
+    """Places on a piece near a joint: (n, 2) mm; the direction to be sensed there (n,) rad; how far along it the joint is (n,) mm, and
+    how far away altogether (n,) mm."""
+
+    places: Array
+    directions: Array
+    offsets: Array
+    away: Array
+
+
+def _places_near(mesh: Mesh, spaces: Sequence[Space], joint: Joint, *, band: float, rng: np.random.Generator) -> list[_Near]:
+    """For each piece the places no more than `band` from the joint along what is stretched, on the side that it names."""
+    found = [_places_on(mesh, space, joint, band=band, rng=rng) for space in spaces]
+    # A joint inside the object is as far from its whole circumference: that much is nobody's fault.
+    beside = [np.sqrt(np.maximum(away**2 - offsets**2, 0.0)) for _, _, offsets, away in found]
+    least = min((float(b.min()) for b in beside if len(b)), default=0.0)
+    excess = [b - least if joint.near else np.zeros(len(b)) for b in beside]
+    return [_Near(p, d, o, np.hypot(o, e)) for (p, d, o, _), e in zip(found, excess, strict=True)]
+
+
+def _places_on(mesh: Mesh, space: Space, joint: Joint, *, band: float, rng: np.random.Generator) -> tuple[Array, Array, Array, Array]:
+    """Places, directions, offsets along, and distances from the joint's point."""
     raster, piece = space.raster, space.piece
-    heights = piece.V(mesh) @ axis - joint
+    none = np.zeros((0, 2)), np.zeros(0), np.zeros(0), np.zeros(0)
+    from_joint = piece.V(mesh) - joint.at
+    heights = from_joint @ joint.along
     if heights.min() > band or heights.max() < -band:
-        return np.zeros((0, 2)), np.zeros(0), np.zeros(0)
+        return none
     places = raster.centres(raster.clearance > space.material.margin)
     face, weights = space.locator.barycentric(places)
-    offset = np.einsum("nk,nk->n", weights, heights[piece.F[face]])
-    keep = np.flatnonzero((face >= 0) & (np.abs(offset) <= band))
+    corners = piece.F[face]
+    offset = np.einsum("nk,nk->n", weights, heights[corners])
+    keep = np.flatnonzero((face >= 0) & (np.abs(offset) <= band) & facing_faces(mesh, space, joint.facing)[face])
     if len(keep) > _PLACES:
         keep = np.sort(rng.choice(keep, _PLACES, replace=False))
     if not len(keep):
-        return np.zeros((0, 2)), np.zeros(0), np.zeros(0)
+        return none
     J = unflattening(mesh, piece, face[keep])
     # The flat direction that runs up the axis fastest: the gradient J^T a, made a direction by the metric J^T J.
-    flat = np.linalg.solve(np.swapaxes(J, 1, 2) @ J, (np.swapaxes(J, 1, 2) @ axis)[..., None])[..., 0]
-    return places[keep], np.arctan2(flat[:, 1], flat[:, 0]), offset[keep]
+    flat = np.linalg.solve(np.swapaxes(J, 1, 2) @ J, (np.swapaxes(J, 1, 2) @ joint.along)[..., None])[..., 0]
+    away = np.linalg.norm(np.einsum("nk,nkd->nd", weights[keep], from_joint[corners[keep]]), axis=1)
+    return places[keep], np.arctan2(flat[:, 1], flat[:, 0]), offset[keep], away

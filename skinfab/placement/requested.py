@@ -14,17 +14,17 @@ from skinfab.material import Material
 from skinfab.mesh.model import Mesh
 from skinfab.patterns.base import Pattern
 from skinfab.patterns.contact_spiral import ContactSpiral
-from skinfab.patterns.strain_lines import StrainLines
 from skinfab.pieces import Piece
 from skinfab.placement.auto import place
 from skinfab.placement.check import describe, find_faults
 from skinfab.placement.fill import Region, best_in
-from skinfab.placement.finger import is_finger, place_strain
+from skinfab.placement.finger import Joint, facing_faces, is_finger, long_axis, place_strain
+from skinfab.placement.raster import Raster
 from skinfab.placement.search import poses_around, sensor_at
 from skinfab.placement.sensor import Sensor
-from skinfab.placement.sensors_file import FlatPose, OnObject, Request, read_sensors_file
+from skinfab.placement.sensors_file import Anywhere, FlatPose, OnObject, Request, read_sensors_file
 from skinfab.placement.space import Footprint, Space, need_of
-from skinfab.tolerances import POINT_FRACTION
+from skinfab.tolerances import JOINT_FRACTION, POINT_FRACTION
 
 #: Directions tried for a sensor at a point of the object.
 _DIRECTIONS = 72
@@ -33,9 +33,19 @@ _SIZE_STEP = 0.5
 
 
 def place_from_file(
-    path: str | Path, mesh: Mesh, pieces: Sequence[Piece], *, material: Material, seed: int = 0
+    path: str | Path, mesh: Mesh, pieces: Sequence[Piece], *, material: Material, seed: int = 0, present: Sequence[Sensor] = ()
 ) -> tuple[tuple[Sensor, ...], list[str]]:
     """Read a file of sensors and place them: first those with a pose, then the others, last the automatic ones.
+
+    Parameters
+    ----------
+    path : path
+    mesh : Mesh
+    pieces : sequence of Piece
+    material : Material
+    seed : int
+    present : sequence of Sensor
+        Sensors that are there already: they stay, the others keep off them, and their ids and channels are taken.
 
     Returns
     -------
@@ -50,10 +60,10 @@ def place_from_file(
     RefusedError
         A sensor does not fit: names it and what is wrong.
     """
-    wanted = read_sensors_file(path, material=material)
-    spaces = [Space(mesh, piece, material) for piece in pieces]
+    wanted = read_sensors_file(path, material=material, present=present)
+    spaces = [Space(mesh, piece, material, [s for s in present if s.piece == piece.id]) for piece in pieces]
     rng = np.random.default_rng(seed)
-    order = {FlatPose: 0, OnObject: 1, type(None): 2}
+    order = {FlatPose: 0, OnObject: 1, Anywhere: 2}
     for request in sorted(wanted.requests, key=lambda r: order[type(r.pose)]):
         space, sensor = _placed(request, mesh, spaces, material, rng)
         faults = find_faults(space.piece, sensor, space.sensors, material=material)
@@ -99,31 +109,64 @@ def _placed(request: Request, mesh: Mesh, spaces: Sequence[Space], material: Mat
         poses = poses_around(space.raster, footprint, places, turns, need=need_of(pattern, material))
         angle = float(turns[np.argmax(np.round(poses.slack, 2))])
         return space, _named(sensor_at(space, pattern, footprint, place_on_piece, angle), request)
-    found = None
-    if isinstance(pattern, StrainLines) and is_finger(mesh):
-        found = place_strain(mesh, spaces, [pattern], material=material, rng=rng)
-    if found is None:
-        found = _anywhere(pattern, spaces, rng)
-    if found is None:
-        raise RefusedError(f"{request.where}: {_too_large(pattern, spaces, rng)}")
+    found = _somewhere(request, pose, mesh, spaces, material, rng)
     return next(s for s in spaces if s.piece.id == found.piece), _named(found, request)
 
 
-def _anywhere(pattern: Pattern, spaces: Sequence[Space], rng: np.random.Generator) -> Sensor | None:
+def _somewhere(
+    request: Request, pose: Anywhere, mesh: Mesh, spaces: Sequence[Space], material: Material, rng: np.random.Generator
+) -> Sensor:
+    """The best place that there is, across a joint for strain sensors; its id and channel are still open."""
+    pattern, facing = request.pattern, None if pose.facing is None else np.array(pose.facing)
+    if pose.joint is not None:
+        at = np.array(pose.joint)
+        _near_enough(request.where, mesh, nearest_on_pieces(mesh, [s.piece for s in spaces], at)[2], fraction=JOINT_FRACTION)
+        along = long_axis(mesh)[0][0] if pose.along is None else np.array(pose.along)
+        found = place_strain(mesh, spaces, [pattern], material=material, rng=rng, joint=Joint(at, along, facing))
+        if found is None:
+            side = "" if facing is None else " on the side that it is to face"
+            raise RefusedError(f"{request.where}: it does not fit across the joint{side}; make it smaller, or give it another pose")
+        return found
+    found = None
+    if pattern.senses == "strain" and is_finger(mesh):
+        found = place_strain(mesh, spaces, [pattern], material=material, rng=rng, joint=Joint.middle_of(mesh, facing=facing))
+    if found is None:
+        found = _anywhere(pattern, spaces, rng, facing=facing)
+    if found is None and facing is not None and _anywhere(pattern, spaces, rng):
+        raise RefusedError(
+            f"{request.where}: it fits, but not where the surface faces {list(pose.facing or ())} to 45 degrees; make it smaller"
+        )
+    if found is None:
+        raise RefusedError(f"{request.where}: {_too_large(pattern, spaces, rng)}")
+    return found
+
+
+def _anywhere(
+    pattern: Pattern, spaces: Sequence[Space], rng: np.random.Generator, *, facing: NDArray[np.float64] | None = None
+) -> Sensor | None:
     """Between creases if it fits there on some piece, else across them; pieces with the widest room first."""
     for between_creases in (True, False):
         rasters = [(space, space.facets if between_creases and len(space.creases) else space.raster) for space in spaces]
         for space, raster in sorted(rasters, key=lambda r: -r[1].clearance.max(initial=0.0)):
-            found = best_in(Region(space, raster.free, between_creases), pattern, rng, packed=False)
+            cells = raster.free if facing is None else _facing_cells(space, raster, facing)
+            found = best_in(Region(space, cells, between_creases), pattern, rng, packed=False) if cells.any() else None
             if found:
                 return found
     return None
 
 
-def _near_enough(where: str, mesh: Mesh, away: float) -> None:
+def _facing_cells(space: Space, raster: Raster, facing: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """The free cells of a raster whose place on the object faces a direction."""
+    cells = raster.free.copy()
+    face = space.locator.faces(raster.centres(cells))
+    cells[raster.free] = (face >= 0) & facing_faces(space.mesh, space, facing)[face]
+    return cells
+
+
+def _near_enough(where: str, mesh: Mesh, away: float, *, fraction: float = POINT_FRACTION) -> None:
     """Refuse a point far from the object: it is of another scale, unit or origin."""
     low, high = mesh.V[mesh.F].min(axis=(0, 1)), mesh.V[mesh.F].max(axis=(0, 1))
-    if away > POINT_FRACTION * np.linalg.norm(high - low):
+    if away > fraction * np.linalg.norm(high - low):
         spans = ", ".join(f"{name} {a:.4g} to {b:.4g}" for name, a, b in zip("xyz", low, high, strict=True))
         raise InputError(
             f"{where}: the point is {away:.3g} mm from the object; coordinates are mm of the object as scaled, which spans {spans}"

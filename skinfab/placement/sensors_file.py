@@ -24,8 +24,14 @@ A list of sensors, each at a place of one's own or wherever it fits, and a table
     params = { n = 3, x = 1.7, b = 1.5, l = 3, s = 15 }
     pose = { point = [4.0, 0.0, 31.5] } # mm on the object: its middle goes to the nearest point of the surface
 
+    [[sensor]]
+    kind = "strain-neck"
+    params = { l1 = 15, l2 = 40, l3 = 32, b1 = 2, b2 = 12 }
+    pose = { joint = [0.0, 0.0, 45.0], along = [0, 0, 1], facing = [0, 1, 0] }   # across that joint, on the side that faces y
+
 `point` takes an `angle_deg` too; without one, the direction with the most room is chosen. The bead's width, the
-gap and the pad's side are the material's unless `params` has `bead`, `gap` or `pad`.
+gap and the pad's side are the material's unless `params` has `bead`, `gap` or `pad`. `along` is the object's long axis
+unless given; `facing` may be left out, and may stand alone: anywhere, but where the surface faces that way.
 """
 
 from __future__ import annotations
@@ -36,14 +42,16 @@ import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 from skinfab.errors import InputError
 from skinfab.material import Material
 from skinfab.patterns.base import Pattern
 from skinfab.patterns.registry import PATTERNS, make_pattern
-from skinfab.patterns.strain_lines import StrainLines
 from skinfab.placement.auto import AutoOptions
+from skinfab.placement.sensor import Sensor
+
+Vector: TypeAlias = tuple[float, float, float]
 
 
 @dataclass(frozen=True)
@@ -60,19 +68,32 @@ class FlatPose:
 class OnObject:
     """A place on the object, mm; without an angle (rad, on the flat piece) any direction will do."""
 
-    point: tuple[float, float, float]
+    point: Vector
     angle: float | None
 
 
 @dataclass(frozen=True)
+class Anywhere:
+    """Wherever it fits best, "auto": across a joint (a point of it, mm, and the direction stretched by bending), and where the
+    surface faces a direction, if these are given."""
+
+    joint: Vector | None = None
+    along: Vector | None = None
+    facing: Vector | None = None
+
+
+Pose: TypeAlias = FlatPose | OnObject | Anywhere
+
+
+@dataclass(frozen=True)
 class Request:
-    """One sensor as the file asks for it; `pose` is None for "auto", `where` is "sensor 3 (C2) of FILE"."""
+    """One sensor as the file asks for it; `where` is "sensor 3 (C2) of FILE"."""
 
     where: str
     id: str
     channel: int
     pattern: Pattern
-    pose: FlatPose | OnObject | None
+    pose: Pose
 
 
 @dataclass(frozen=True)
@@ -83,8 +104,8 @@ class SensorsFile:
     auto: AutoOptions | None
 
 
-def read_sensors_file(path: str | Path, *, material: Material) -> SensorsFile:
-    """Read a file of sensors.
+def read_sensors_file(path: str | Path, *, material: Material, present: Sequence[Sensor] = ()) -> SensorsFile:
+    """Read a file of sensors; ids and channels of those that are `present` already are taken.
 
     Raises
     ------
@@ -105,7 +126,7 @@ def read_sensors_file(path: str | Path, *, material: Material) -> SensorsFile:
     if not tables and "auto" not in data:
         raise InputError(f"{where} asks for no sensor; add a [[sensor]] or an [auto] table")
     auto = _auto(data["auto"], f"{where}, [auto]") if "auto" in data else None
-    return SensorsFile(_requests(tables, where, material), auto)
+    return SensorsFile(_requests(tables, where, material, present), auto)
 
 
 def _auto(table: Any, where: str) -> AutoOptions:
@@ -130,9 +151,9 @@ def _auto(table: Any, where: str) -> AutoOptions:
         raise InputError(f"{where}: {fault}") from fault
 
 
-def _requests(tables: Sequence[Mapping[str, Any]], where: str, material: Material) -> tuple[Request, ...]:
-    ids = [t["id"] for t in tables if "id" in t]
-    channels = [t["channel"] for t in tables if "channel" in t]
+def _requests(tables: Sequence[Mapping[str, Any]], where: str, material: Material, present: Sequence[Sensor]) -> tuple[Request, ...]:
+    ids = [*(s.id for s in present), *(t["id"] for t in tables if "id" in t)]
+    channels = [*(s.channel for s in present), *(t["channel"] for t in tables if "channel" in t)]
     requests = []
     for k, table in enumerate(tables, 1):
         id = table["id"] if "id" in table else _default_id(table.get("kind"), ids)
@@ -154,8 +175,15 @@ def _requests(tables: Sequence[Mapping[str, Any]], where: str, material: Materia
         channel = _count(table["channel"], "channel", here) if "channel" in table else _next(channels, lambda n: n)
         ids.append(id)
         channels.append(channel)
-        requests.append(Request(here, id, channel, pattern, _pose(table["pose"], here)))
+        pose = _pose(table["pose"], here)
+        if isinstance(pose, Anywhere) and pose.joint is not None and pattern.senses != "strain":
+            raise InputError(f"{here}: a {pattern.kind} is not stretched by a joint; give it a point or a direction to face")
+        requests.append(Request(here, id, channel, pattern, pose))
+    taken = {"id": [s.id for s in present], "channel": [str(s.channel) for s in present]}
     for name, values in (("id", [r.id for r in requests]), ("channel", [str(r.channel) for r in requests])):
+        for request, value in zip(requests, values, strict=True):
+            if value in taken[name]:
+                raise InputError(f"{request.where}: {name} {value} is that of a sensor which is there already; choose another")
         twice = [r.where for r, value in zip(requests, values, strict=True) if values.count(value) > 1]
         if twice:
             value = next(v for v in values if values.count(v) > 1)
@@ -167,23 +195,26 @@ def _default_id(kind: Any, taken: Sequence[Any]) -> str | None:
     """The next free name of that kind of pattern; None where there is no such kind."""
     if not isinstance(kind, str) or kind not in PATTERNS:
         return None
-    letter = "S" if kind == StrainLines.kind else "C"
+    letter = PATTERNS[kind].senses[0].upper()
     return str(_next(taken, lambda n: f"{letter}{n + 1}"))
 
 
-def _pose(pose: Any, where: str) -> FlatPose | OnObject | None:
+def _pose(pose: Any, where: str) -> Pose:
     if pose == "auto":
-        return None
+        return Anywhere()
     if not isinstance(pose, dict):
-        raise InputError(f'{where}: pose is {pose!r}; it must be "auto", {{ piece, x, y, angle_deg }} or {{ point = [x, y, z] }}')
+        forms = "{ piece, x, y, angle_deg }, { point = [x, y, z] }, { joint = [x, y, z] } or { facing = [x, y, z] }"
+        raise InputError(f'{where}: pose is {pose!r}; it must be "auto", {forms}')
     if "point" in pose:
         _known(pose, ("point", "angle_deg"), f"{where}, pose")
-        point = pose["point"]
-        if not isinstance(point, list) or len(point) != 3:
-            raise InputError(f"{where}: point is {point!r}; it must be [x, y, z] in mm")
-        x, y, z = (_number(c, "point", where) for c in point)
         angle = math.radians(_number(pose["angle_deg"], "angle_deg", where)) if "angle_deg" in pose else None
-        return OnObject((x, y, z), angle)
+        return OnObject(_vector(pose, "point", where), angle)
+    if "joint" in pose or "facing" in pose or "along" in pose:
+        _known(pose, ("joint", "along", "facing"), f"{where}, pose")
+        if "along" in pose and "joint" not in pose:
+            raise InputError(f"{where}, pose: along is the direction that a joint stretches; give the joint too")
+        joint = _vector(pose, "joint", where) if "joint" in pose else None
+        return Anywhere(joint, *(_direction(pose, name, where) if name in pose else None for name in ("along", "facing")))
     _known(pose, ("piece", "x", "y", "angle_deg"), f"{where}, pose")
     for name in ("piece", "x", "y"):
         if name not in pose:
@@ -206,6 +237,23 @@ def _number(value: Any, name: str, where: str) -> float:
     if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
         raise InputError(f"{where}: {name} is {value!r}; it must be a number")
     return float(value)
+
+
+def _vector(pose: Mapping[str, Any], name: str, where: str) -> Vector:
+    value = pose[name]
+    if not isinstance(value, list) or len(value) != 3:
+        raise InputError(f"{where}: {name} is {value!r}; it must be [x, y, z]")
+    x, y, z = (_number(c, name, where) for c in value)
+    return x, y, z
+
+
+def _direction(pose: Mapping[str, Any], name: str, where: str) -> Vector:
+    """A vector made one long."""
+    x, y, z = _vector(pose, name, where)
+    length = math.hypot(x, y, z)
+    if not length:
+        raise InputError(f"{where}: {name} is [0, 0, 0], which is no direction; [0, 0, 1] is up along z")
+    return x / length, y / length, z / length
 
 
 def _count(value: Any, name: str, where: str) -> int:

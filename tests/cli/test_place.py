@@ -1,12 +1,16 @@
 """`skinfab place`: sensors on the pieces of a document."""
 
 import json
+import re
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from skinfab.cli.main import main
 from skinfab.document import load_skin
+from skinfab.patterns.registry import PATTERNS
+from skinfab.placement.edit import middle_of
 
 ROOT = Path(__file__).parents[2]
 ONE = '[[sensor]]\nkind = "contact-spiral"\nparams = {{ n = 3, x = 1.7, b = 1.5, l = 3, s = {s} }}\npose = {pose}\n'
@@ -55,3 +59,110 @@ def test_a_refused_file_leaves_the_document_alone(
     error = capsys.readouterr().err
     assert says in error and error.startswith("skinfab: ")
     assert document.read_bytes() == before
+
+
+@pytest.fixture
+def placed(document: Path, tmp_path: Path) -> Path:
+    (tmp_path / "two.toml").write_text(ONE.format(s=15, pose='"auto"') * 2)
+    assert main(["place", str(document), "--sensors", str(tmp_path / "two.toml")]) == 0
+    return document
+
+
+def test_changes_in_the_order_given(placed: Path) -> None:
+    before = {s.id: s for s in load_skin(placed).sensors}
+    one = before["C1"]
+    # Off the piece and back again: only where all changes lead is checked.
+    changes = [
+        "--shift",
+        "C1",
+        "900",
+        "0",
+        "--set",
+        "C1",
+        "n=2",
+        "caps=true",
+        "channel=5",
+        "--shift",
+        "C1",
+        "-899.5",
+        "0",
+        "--rotate",
+        "C1",
+        "20",
+    ]
+    assert main(["place", str(placed), *changes, "--remove", "C2"]) == 0
+    (after,) = load_skin(placed).sensors
+    assert (after.pattern.n, after.pattern.caps, after.channel, after.pattern.s) == (2, True, 5, 15)
+    assert (after.angle - one.angle) % 6.283185307179586 == pytest.approx(0.3490658503988659)
+    np.testing.assert_allclose(middle_of(after), np.add(middle_of(one), (0.5, 0.0)), atol=1e-9)
+
+
+def test_two_sensors_swap_places(placed: Path) -> None:
+    one, two = load_skin(placed).sensors
+    words = []
+    for sensor, to in ((one, two), (two, one)):
+        turn = repr(np.degrees(to.angle - sensor.angle).item())
+        words += ["--rotate", sensor.id, turn, "--move-to", sensor.id, to.piece, repr(to.x), repr(to.y)]
+    assert main(["place", str(placed), *words]) == 0
+    swapped = load_skin(placed).sensors
+    np.testing.assert_allclose([(s.x, s.y) for s in swapped], [(two.x, two.y), (one.x, one.y)], atol=1e-9)
+
+
+def test_adding_to_what_is_there(placed: Path, tmp_path: Path) -> None:
+    (tmp_path / "more.toml").write_text(ONE.format(s=15, pose='"auto"') + "[auto]\nsizes = [10]\nper_piece = 1\n")
+    before = load_skin(placed).sensors
+    assert main(["place", str(placed), "--remove", "C1", "--add", str(tmp_path / "more.toml")]) == 0
+    after = {s.id: s for s in load_skin(placed).sensors}
+    assert after["C2"] == before[1] and after["C1"].channel == 0 and len(after) > 2
+    (tmp_path / "more.toml").write_text(ONE.format(s=15, pose='"auto"') + 'id = "C2"\n')
+    assert main(["place", str(placed), "--add", str(tmp_path / "more.toml")]) == 1
+
+
+@pytest.mark.parametrize(
+    ("changes", "status", "says"),
+    [
+        (["--move", "C1", "500", "2"], 3, "C1 is .* outside piece P1"),
+        (["--move-to", "C1", "P9", "5", "2"], 3, "C1 is on piece P9, which does not exist; there are P1"),
+        (["--set", "C1", "n=40"], 1, "C1: contact-spiral: n is 40; .* the nearest value that works is 3"),
+        (["--set", "C1", "s=300"], 3, "C1 is .* outside piece P1"),
+        (["--set", "C1", "m=2"], 1, "unknown parameter 'm'"),
+        (["--set", "C1", "n=wide"], 1, "n is 'wide'; it must be a finite number"),
+        (["--set", "C1", "channel=1"], 3, "channel 1 is used by more than one sensor"),
+        (["--set", "C1", "channel=1.5"], 1, "channel is 1.5; it must be a whole number"),
+        (["--remove", "C7"], 1, "there is no sensor C7"),
+        (["--set", "C1"], 2, "NAME=VALUE"),
+        (["--set", "C1", "n"], 2, "NAME=VALUE"),
+        (["--move", "C1", "left", "2"], 2, "'left' is not a number"),
+        (["--rotate", "C1", "nan"], 2, "'nan' is not a number"),
+        (["--remove", "C1", "--sensors", "x.toml"], 2, "--add FILE adds some"),
+        (["--list", "--remove", "C1"], 2, "--list changes and writes nothing"),
+    ],
+)
+def test_a_refused_change_leaves_the_document_alone(
+    changes: list[str], status: int, says: str, placed: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    before = placed.read_bytes()
+    capsys.readouterr()
+    assert main(["place", str(placed), *changes]) == status
+    assert re.search(says, capsys.readouterr().err)
+    assert placed.read_bytes() == before
+
+
+def test_list_says_where_and_writes_nothing(placed: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    before = placed.read_bytes()
+    capsys.readouterr()
+    assert main(["place", str(placed), "--list"]) == 0
+    assert re.search(r"^C1: contact-spiral on P1 at \(\d+\.\d\d, \d+\.\d\d\) turned \d+\.\d deg, channel 0, ", capsys.readouterr().out)
+    assert main(["place", str(placed), "--list", "--json"]) == 0
+    said = json.loads(capsys.readouterr().out)["sensors"]
+    assert [(s["id"], s["pose"]["x"]) for s in said] == [(s.id, s.x) for s in load_skin(placed).sensors]
+    assert placed.read_bytes() == before
+
+
+def test_every_pattern_is_listed(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["place", "--patterns"]) == 0
+    said = capsys.readouterr().out
+    for kind, cls in PATTERNS.items():
+        assert re.search(rf"^{kind} \({cls.senses}\): ", said, re.M)
+        for name in cls.example:
+            assert re.search(rf"^  {name} +[A-Z]", said, re.M)

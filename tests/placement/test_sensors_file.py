@@ -8,7 +8,7 @@ import pytest
 
 from skinfab.errors import InputError
 from skinfab.material import load_material
-from skinfab.placement.sensors_file import FlatPose, OnObject, read_sensors_file
+from skinfab.placement.sensors_file import Anywhere, FlatPose, OnObject, read_sensors_file
 
 MATERIAL = load_material()
 GOOD = '[[sensor]]\nkind = "contact-spiral"\nparams = { n = 3, x = 1.7, b = 1.5, l = 3, s = 15 }\npose = "auto"\n'
@@ -25,7 +25,7 @@ def test_the_example_of_the_user_guide(tmp_path: Path) -> None:
     wanted = read(tmp_path, re.search(r"```toml\n(.*?)```", guide, re.S)[1])
     assert [(r.id, r.channel) for r in wanted.requests] == [("C1", 0), ("S1", 7), ("C2", 1)]
     assert wanted.requests[0].pose == FlatPose("P1", 12.5, 20.0, math.pi / 2)
-    assert wanted.requests[1].pose is None and wanted.requests[1].pattern.b == 6
+    assert wanted.requests[1].pose == Anywhere() and wanted.requests[1].pattern.b == 6
     assert wanted.requests[2].pose == OnObject((4.0, 0.0, 31.5), None)
     assert (wanted.auto.kinds, wanted.auto.sizes, wanted.auto.per_piece) == (("contact-spiral",), (22.0, 15.0), 2)
     assert wanted.requests[0].pattern.pad == MATERIAL.pad
