@@ -15,7 +15,18 @@ import shapely
 import trimesh
 
 OCTOPRINT = Path(__file__).parents[1] / ".venv-octoprint/bin/octoprint"
-ALWAYS = ("skin.skin", "report.json", "report.html", "flat.svg", "flat.dxf", "flat.obj", "preview.png", "wiring.csv", "wrap_strain.svg")
+ALWAYS = (
+    "skin.skin",
+    "report.json",
+    "report.html",
+    "flat.svg",
+    "flat.dxf",
+    "flat.pdf",
+    "flat.obj",
+    "preview.png",
+    "wiring.csv",
+    "wrap_strain.svg",
+)
 
 
 def read_report(folder: Path) -> dict:
