@@ -195,7 +195,10 @@ def surface(args: argparse.Namespace, mesh: Mesh, *, usual: float = 0.0) -> Surf
         offset = offset_mesh(mesh, thickness * args.neutral, round_off=args.thickness is None)
     except InputError as fault:
         raise InputError(f"--thickness {thickness:g}: {fault}; skinfab make without --thickness rounds such places off") from fault
-    return Surface(offset.mesh, thickness, args.neutral, offset.remarks)
+    remarks = offset.remarks
+    if usual and thickness and thickness != usual:
+        remarks += (f"flattened for a skin {thickness:g} mm thick, but the material profile pours {usual:g} mm; change one of them",)
+    return Surface(offset.mesh, thickness, args.neutral, remarks)
 
 
 def to_skin(

@@ -138,9 +138,12 @@ def worn_skin(
         step = (offset_mesh(object_mesh, farthest, round_off=True).mesh.V - object_mesh.V) / farthest
     else:
         return WornSkin(object_mesh, object_mesh, even)
-    at = {flattened_at: flattened}  # exactly, where it is the same
-    neutral, conductor = (at.get(d) or Mesh(object_mesh.V + d * step, object_mesh.F, object_mesh.name) for d in (neutral_at, conductor_at))
-    return WornSkin(neutral, conductor, even)
+
+    def surface(distance: float) -> Mesh:
+        return Mesh(object_mesh.V + distance * step, object_mesh.F, object_mesh.name)
+
+    neutral = flattened if neutral_at == flattened_at else surface(neutral_at)
+    return WornSkin(neutral, neutral if conductor_at == neutral_at else surface(conductor_at), even)
 
 
 def wrap_strain(worn: WornSkin | Mesh, piece: Piece, path: Path, *, step: float = 0.25, locator: Locator | None = None) -> WrapStrain:

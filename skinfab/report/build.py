@@ -15,13 +15,13 @@ from skinfab.electrical import ink_volume, resistance
 from skinfab.errors import RefusedError
 from skinfab.files import atomic_write
 from skinfab.flatten.distortion import Distortion
-from skinfab.flatten.locate import Locator
 from skinfab.material import Material
 from skinfab.patterns.registry import parameters
 from skinfab.pieces import Piece
 from skinfab.placement.sensor import Sensor
-from skinfab.placement.wrap_strain import wrap_strain
+from skinfab.placement.wrap_strain import StrainAlong
 from skinfab.report.cautions import cautions
+from skinfab.report.strains import SensorStrains, sensor_strains, strain_facts
 from skinfab.skin import Skin
 from skinfab.wiring import board_of
 
@@ -42,6 +42,7 @@ def build_report(
     timing_s: Facts,
     peak_rss_mb: float,
     warnings: Sequence[str] = (),
+    strains: SensorStrains | None = None,
 ) -> dict[str, Any]:
     """Everything `make` found out, as plain JSON values.
 
@@ -64,6 +65,8 @@ def build_report(
     peak_rss_mb : float
     warnings : sequence of str
         What was said on the way; what the figures themselves warn of is added here (`skinfab.report.cautions`).
+    strains : SensorStrains, optional
+        Of the skin's sensors; without them the conductors are taken to lie in the skin's neutral surface.
 
     Returns
     -------
@@ -75,14 +78,15 @@ def build_report(
     RefusedError
         A value is not finite, so the result behind it cannot be right.
     """
+    strains = strains or sensor_strains(skin, material)
     report: dict[str, Any] = {
         "schema": SCHEMA,
-        "made_for": _made_for(skin, material),
+        "made_for": _made_for(skin, material, strains),
         "mesh": _mesh(skin),
         "pieces": [_piece(piece, d) for piece, d in zip(skin.pieces, distortions, strict=True)],
         "distortion": _overall(skin, distortions),
         "seam_mm": float(np.linalg.norm(np.subtract(*skin.mesh.V[np.reshape(skin.seams, (-1, 2)).T]), axis=1).sum()),
-        "sensors": _sensors(skin, material),
+        "sensors": [_sensor(s, material, along, strains.even) for s, along in zip(skin.sensors, strains.along, strict=True)],
         "gcode": [_plain(facts) for facts in gcode],
         "moulds": [_plain(facts) for facts in moulds],
         "recipe": _plain(recipe or {}),
@@ -114,7 +118,7 @@ def report_schema() -> dict[str, Any]:
     return schema
 
 
-def _made_for(skin: Skin, material: Material) -> dict[str, Any]:
+def _made_for(skin: Skin, material: Material, strains: SensorStrains) -> dict[str, Any]:
     """What must be the same for the result to be the same, and to be of use at the printer."""
     return {
         "software": f"skinfab {__version__}",
@@ -125,6 +129,9 @@ def _made_for(skin: Skin, material: Material) -> dict[str, Any]:
         "bead_width_mm": material.ink.bead_width,
         "bead_area_mm2": material.ink.bead_area_mm2,
         "skin_thickness_mm": material.depth,
+        "flattened_at_mm": skin.flattened_at,
+        "neutral_mm": strains.neutral_mm,
+        "conductor_mm": strains.conductor_mm,
         "max_distortion": skin.max_distortion,
         "seed": skin.seed,
         "scale": skin.source.scale,
@@ -144,7 +151,7 @@ def _mesh(skin: Skin) -> dict[str, Any]:
         "n_vertices": len(skin.mesh.V),
         "n_faces": len(skin.mesh.F),
         "units": source.units,
-        "bbox_mm": skin.mesh.bbox.tolist(),
+        "bbox_mm": skin.object.bbox.tolist(),
     }
 
 
@@ -174,17 +181,10 @@ def _overall(skin: Skin, distortions: Sequence[Distortion]) -> dict[str, float]:
     return {"mean": float(np.average(d, weights=area)), "p99": float(p99), "max": float(d.max())}
 
 
-def _sensors(skin: Skin, material: Material) -> list[dict[str, Any]]:
-    used = {sensor.piece for sensor in skin.sensors}
-    locators = {piece.id: Locator(piece.UV, piece.F) for piece in skin.pieces if piece.id in used}
-    return [_sensor(skin, sensor, material, locators[sensor.piece]) for sensor in skin.sensors]
-
-
-def _sensor(skin: Skin, sensor: Sensor, material: Material, locator: Locator) -> dict[str, Any]:
+def _sensor(sensor: Sensor, material: Material, along: StrainAlong, even: float) -> dict[str, Any]:
     length = sensor.path.length
     board, board_input = board_of(sensor.channel)
     r = resistance(length, material.ink)
-    strain = wrap_strain(skin.mesh, skin.piece(sensor.piece), sensor.path, locator=locator)
     return {
         "id": sensor.id,
         "kind": sensor.pattern.kind,
@@ -194,7 +194,7 @@ def _sensor(skin: Skin, sensor: Sensor, material: Material, locator: Locator) ->
         # The pads are ink too, though no current runs their whole length.
         "ink_mm3": ink_volume(sensor.printed_path.length, material.ink),
         "resistance_kohm": {"low": r.low, "median": r.median, "high": r.high},
-        "wrap_strain": {"mean": strain.mean, "max": strain.max},
+        "wrap_strain": strain_facts(sensor, along, material, even=even),
         "channel": sensor.channel,
         "board": board,
         "board_input": board_input,

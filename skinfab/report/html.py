@@ -61,6 +61,7 @@ def write_html(report: Mapping[str, Any], path: str | Path, *, pictures: Mapping
         _section("Made for", _made_for(report)),
         _section("Pieces", _pieces(report)),
         _section("Sensors", _sensors(report)),
+        _section("Worn", _worn(report)),
         _section("Wires", _wires(report)),
         _section("G-code", _gcode(report)),
         _section("Moulds", _moulds(report)),
@@ -102,6 +103,7 @@ def _made_for(report: Mapping[str, Any]) -> str:
         ["ink", made["ink"]],
         ["bead", f"{made['bead_width_mm']:g} mm wide, cross-section {made['bead_area_mm2']:g} mm²"],
         ["skin", f"{made['skin_thickness_mm']:g} mm thick"],
+        ["flattened", _flattened_at(made["flattened_at_mm"])],
         ["object", f"{mesh['file']}, read in {mesh['units']}" + (f", times {made['scale']:g} to mm" if made["scale"] != 1 else "")],
         ["SHA-256 of the object's file", mesh["sha256"]],
         ["bound on each piece's mean d", f"{made['max_distortion']:g}"],
@@ -169,6 +171,45 @@ def _alike(params: Sequence[Mapping[str, float | bool]]) -> dict[str, float | bo
 
 def _parameters(values: Mapping[str, float | bool]) -> str:
     return ", ".join(f"{key} = {('no', 'yes')[v] if isinstance(v, bool) else f'{v:g}'}" for key, v in values.items())
+
+
+def _flattened_at(distance: float) -> str:
+    return f"the surface {distance:g} mm outside the object, amid the skin" if distance else "the object's own surface"
+
+
+def _worn(report: Mapping[str, Any]) -> str:
+    """What wearing does to each conductor, part by part."""
+    made = report["made_for"]
+    rows = [
+        [
+            s["id"],
+            f"{s['length_mm']:.1f}",
+            f"{w['worn_length_mm']:.1f}",
+            *(f"{percent(part['mean']):.2f} / {percent(part['max']):.2f}" for part in (w["membrane"], w["bending"], w)),
+            f"{s['resistance_kohm']['median']:.0f}",
+            f"{w['worn_resistance_kohm']:.0f}",
+            f"{percent(w['resistance_factor'] - 1):+.1f}",
+        ]
+        for s in report["sensors"]
+        for w in (s["wrap_strain"],)
+    ]
+    head = [
+        "sensor",
+        "#printed, mm",
+        "#worn, mm",
+        "#membrane, %",
+        "#bending, %",
+        "#together, %",
+        "#R0 flat, kΩ",
+        "#R0 worn, kΩ",
+        "#shift of the line, %",
+    ]
+    note = (
+        "From lying flat to being worn, mean / largest over a skin's thickness of path; + is stretched. Membrane: of the skin's neutral "
+        f"surface, {made['neutral_mm']:g} mm from its inner side; bending: of the conductor beyond it, printed {made['conductor_mm']:g} mm "
+        "from the inner side, which lies on the floor of the mould and then on the object. Resistances are medians of prints."
+    )
+    return _table(head, rows, note)
 
 
 def _wires(report: Mapping[str, Any]) -> str:

@@ -58,7 +58,9 @@ def test_figures_in_closed_form(skin: Skin, distortions: list[Distortion]) -> No
     strain, contact = report["sensors"]
     assert strain["length_mm"] == pytest.approx(2 * 59 + 2 * 52 + 3 * np.pi, abs=1e-9)  # 231.42 mm in the paper
     assert strain["ink_mm3"] > 0.484 * strain["length_mm"]  # the pads are ink too
-    assert strain["wrap_strain"]["max"] == pytest.approx(0, abs=1e-9)
+    # Flattened without thickness: 1.25 mm outside, the cells of 7.5 mm beside the edge that S1 crosses are so much longer.
+    assert strain["wrap_strain"]["max"] == pytest.approx(1.25 / 7.5) == strain["wrap_strain"]["membrane"]["max"]
+    assert contact["wrap_strain"]["max"] == pytest.approx(0, abs=1e-9)  # it lies in the middle of a side
     r = strain["resistance_kohm"]
     assert r["low"] < r["median"] < r["high"] and r["median"] / r["low"] == pytest.approx(r["high"] / r["median"])
     assert strain["params"]["l1"] == 60 and (strain["channel"], contact["channel"]) == (0, 1)
@@ -77,6 +79,9 @@ def test_it_says_what_it_was_made_for(skin: Skin, distortions: list[Distortion])
         "bead_width_mm": 0.785,
         "bead_area_mm2": 0.484,
         "skin_thickness_mm": 2.5,
+        "flattened_at_mm": 0.0,
+        "neutral_mm": 1.25,
+        "conductor_mm": 1.25,
         "max_distortion": 4.07,
         "seed": 3,
         "scale": 1.0,
@@ -89,8 +94,9 @@ def test_it_says_what_it_was_made_for(skin: Skin, distortions: list[Distortion])
 def test_bad_figures_are_warned_of_after_what_was_said_before(skin: Skin, distortions: list[Distortion]) -> None:
     d = np.full(len(skin.mesh.F), 4.0)
     d[3] = 12.0
-    said, added = report_of(skin, [dataclasses.replace(distortions[0], d=d, max=12.0)])["warnings"]
+    said, added, strained = report_of(skin, [dataclasses.replace(distortions[0], d=d, max=12.0)])["warnings"]
     assert said == "mind the gap" and added.startswith("piece P1: ") and "12.0" in added
+    assert strained.startswith("sensor S1: ")
 
 
 def test_overall_distortion_is_weighted_by_area_on_the_object(skin: Skin, distortions: list[Distortion]) -> None:

@@ -83,6 +83,7 @@ def test_well_formed_and_complete(skin: Skin, distortions: list[Distortion], tmp
         "Made for",
         "Pieces",
         "Sensors",
+        "Worn",
         "Wires",
         "G-code",
         "Moulds",
@@ -125,12 +126,24 @@ def test_it_says_what_it_was_made_for(skin: Skin, distortions: list[Distortion],
         "ink": "MG Chemicals 846-1P carbon grease",
         "bead": "0.785 mm wide, cross-section 0.484 mm²",
         "skin": "2.5 mm thick",
+        "flattened": "the object&#x27;s own surface",
         "object": "wall.obj, read in mm",
         "SHA-256 of the object&#x27;s file": "ab" * 32,
         "bound on each piece&#x27;s mean d": "4.07",
         "seed": "7",
         "software": f"skinfab {skinfab.__version__}",
     }
+
+
+def test_what_wearing_does(skin: Skin, distortions: list[Distortion], tmp_path: Path) -> None:
+    page_of(skin, distortions, tmp_path)
+    strain, contact = rows_of(tmp_path, "Worn")
+    # S1's four lines cross an edge of the box, where the neutral surface is 2 x 1.25 mm longer than the object's own.
+    assert strain[:3] == ["S1", "231.4", "241.4"] and strain[3] == strain[5] == "4.32 / 16.67" and strain[4] == "0.00 / 0.00"
+    assert contact[3:6] == ["0.00 / 0.00"] * 3 and contact[6] == contact[7] and contact[8] == "+0.0"
+    # The line alone is stretched: its ends' contacts are not.
+    flat, worn, shift = (float(cell) for cell in strain[6:])
+    assert (worn - 10) / (flat - 10) == pytest.approx(1 + shift / 100, abs=0.005)
 
 
 def test_two_wires_a_sensor(skin: Skin, distortions: list[Distortion], tmp_path: Path) -> None:
