@@ -60,6 +60,21 @@ def atomic_write(target: str | Path, content: str | bytes) -> None:
         partial.write_bytes(data)
 
 
+def require_place(target: str | Path) -> None:
+    """Refuse a place where no file can be written, before the work whose result it is to hold.
+
+    Raises
+    ------
+    InputError
+        Its folder does not exist, or it is a folder itself.
+    """
+    target = Path(target)
+    if target.is_dir():
+        raise InputError(f"cannot write {target}: it is a folder; name a file in it")
+    if not target.parent.is_dir():
+        raise InputError(f"cannot write {target}: its folder does not exist; create it first")
+
+
 def explain_os_error(fault: OSError, target: str | Path) -> str:
     """One sentence for a failed write: what, where, what to do."""
     if fault.errno == errno.ENOSPC:

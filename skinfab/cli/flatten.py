@@ -7,9 +7,10 @@ import json
 import time
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from skinfab.cli import steps
+from skinfab.flatten.methods import METHODS
 
 if TYPE_CHECKING:
     import numpy as np
@@ -23,20 +24,23 @@ if TYPE_CHECKING:
     from skinfab.pieces import Piece
     from skinfab.seams.cut import OpenPiece
 
-#: The names of `flatten.methods.METHODS`, and the two that also cut; repeated here because --help imports nothing heavy.
-NAMES = ("auto", "bff", "bff-cones", "isometric", "lscm", "arap", "slim", "harmonic")
+#: The two that also cut, and those that flatten what is one piece already.
+NAMES = ("auto", "bff-cones", *METHODS)
 
 
-def cones(text: str) -> str | int | list[int]:
-    """``auto``, how many, or a comma-separated list of vertices (one vertex: ``12,``)."""
+def cones(text: str) -> str | int | list[tuple[int, float | None]]:
+    """``auto``, how many, or a comma-separated list of vertices (one vertex: ``12,``), with cone angles in degrees: ``0:270,5:180``."""
     if text == "auto":
         return text
     try:
-        if "," in text:
-            return [int(word) for word in text.split(",") if word.strip()]
+        if "," in text or ":" in text:
+            words = [word.partition(":") for word in text.split(",") if word.strip()]
+            return [(int(vertex), float(angle) if colon else None) for vertex, colon, angle in words]
         number = int(text)
     except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r} is neither auto, nor a number, nor a list of vertices such as 0,5,17") from None
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is neither auto, nor a number, nor a list of vertices such as 0,5,17 or 0:270,5:180"
+        ) from None
     if number < 1:
         raise argparse.ArgumentTypeError(f"{number} cones cannot be placed; give at least 1")
     return number
@@ -48,14 +52,31 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "flatten",
         help="flatten a mesh and say how good it is",
         description="Flatten a mesh; OUT.obj is the mesh (v, mm) with the flat pieces as texture coordinates (vt, mm). auto minimises the "
-        "distortion d, and first cuts what is no disk, with holes or without; bff-cones cuts through cone points; the others need a disk.",
+        "distortion d, and first cuts what is no disk, with holes or without; the other methods but bff-cones need one.",
     )
     steps.add_mesh_options(p)
     p.add_argument("-o", "--output", metavar="OUT.obj", type=steps.named(".obj"), required=True, help="the file to write")
-    p.add_argument("--method", choices=NAMES, default="auto", help="default: auto")
-    p.add_argument("--cones", type=cones, metavar="N|auto|LIST", help="for bff-cones: how many cones, auto, or vertices such as 0,5,17")
     p.add_argument(
-        "--max-distortion", type=steps.bound, default=4.05, metavar="D", help="for auto where it cuts: mean d of a piece at most"
+        "--method",
+        choices=NAMES,
+        default="auto",
+        help="auto (default): least d, cut where it must be; isometric: least d; "
+        "bijective: least d that never covers itself; bff: angles kept, quick; bff-cones: cut through cone points, for near-polyhedra; "
+        "lscm, harmonic, arap, slim: libigl's, to compare with (slim takes minutes on 100,000 triangles)",
+    )
+    p.add_argument(
+        "--cones",
+        type=cones,
+        metavar="N|auto|LIST",
+        help="for bff-cones: how many cones, auto, or vertices such as 0,5,17; with cone angles in degrees (360 less the curvature: a "
+        "cube's corner has 270) such as 0:270,5:180",
+    )
+    p.add_argument(
+        "--max-distortion",
+        type=steps.bound,
+        default=4.05,
+        metavar="D",
+        help="what a skin stands; where auto cuts, each piece's bound (default: 4.05)",
     )
     p.add_argument(
         "--simplify",
@@ -63,6 +84,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         default="off",
         help="auto (for auto and isometric): flatten fewer triangles where the mean d is within 0.002 of that of all (default: off)",
     )
+    p.add_argument("--keep-area", action="store_true", help="each piece as large as on the object, not at the scale of the least d")
+    steps.add_thickness_options(p)
     p.add_argument("--json", metavar="FILE", type=Path, help="write the figures to FILE as JSON")
     p.set_defaults(run=run, wrong_usage=p.error)
 
@@ -75,33 +98,55 @@ def run(args: argparse.Namespace) -> int:
         args.wrong_usage(
             f"--simplify {args.simplify} goes with --method auto or isometric, whose aim is the least d; {args.method} has another"
         )
+    from skinfab.cli.flatten_figures import figures, overall
     from skinfab.drawings.obj import write_flat_obj
     from skinfab.drawings.sheet import sheet_offsets
     from skinfab.files import atomic_write
 
+    _check_places(args)
     loaded = steps.load(args)
+    mesh = steps.surface(args, loaded.mesh).mesh
     began = time.perf_counter()
     simplified: list[Simplified] = []
-    pieces, distortions = _flatten(args, loaded.mesh, simplified)
+    pieces, distortions = _flatten(args, mesh, simplified)
+    if args.keep_area:
+        pieces, distortions = _at_kept_area(mesh, pieces)
     seconds = time.perf_counter() - began
     steps.say([found.sentence for found in simplified])
     _require_sound(args.method, pieces, distortions)
-    write_flat_obj(loaded.mesh, pieces, sheet_offsets(pieces), args.output)
+    write_flat_obj(mesh, pieces, sheet_offsets(pieces), args.output)
     if args.json:
-        figures = _figures(args.method, loaded.mesh, pieces, distortions, seconds)
-        figures |= (
+        found = figures(loaded, mesh, pieces, distortions, method=args.method, max_distortion=args.max_distortion, seconds=seconds)
+        found |= (
             {"simplified": [{"n_faces": s.n_faces, "n_coarse": s.n_coarse, "effect": s.effect} for s in simplified]} if simplified else {}
         )
-        atomic_write(args.json, json.dumps(figures, indent=1, allow_nan=False) + "\n")
+        atomic_write(args.json, json.dumps(found, indent=1, allow_nan=False) + "\n")
     for line in steps.piece_lines(pieces, distortions):
         print(line)
-    mean, most = _overall(loaded.mesh, pieces, distortions)
+    mean, most = overall(mesh, pieces, distortions)
     print(f"{args.output}: {steps.counted(len(pieces), 'piece')} by {args.method} in {seconds:.2f} s, d mean {mean:.4f}, max {most:.3f}")
     if mean > args.max_distortion:
         steps.say(
-            [f"mean d {mean:.3f} is more than a skin stands ({args.max_distortion:g}); skinfab segment finds darts that bring it down"]
+            [
+                f"mean d {mean:.3f} is more than a skin stands ({args.max_distortion:g}); "
+                + ("" if args.method in ("auto", "isometric", "bijective") else "--method auto makes it the least without a cut, ")
+                + "skinfab segment finds darts that bring it down"
+            ]
         )
     return 0
+
+
+def _check_places(args: argparse.Namespace) -> None:
+    """Before anything is computed: where it goes can be written, and is nothing that is needed."""
+    from skinfab.errors import InputError
+    from skinfab.files import require_place
+
+    for path in [args.output, *([args.json] if args.json else [])]:
+        require_place(path)
+        if args.mesh.exists() and path.exists() and path.samefile(args.mesh):
+            raise InputError(f"{path} is the mesh itself, which would be lost; write to another file")
+    if args.json and args.json.resolve() == args.output.resolve():
+        raise InputError(f"{args.json} is to hold both the flat mesh and the figures; give --json another file")
 
 
 def _flatten(args: argparse.Namespace, mesh: Mesh, simplified: list[Simplified]) -> tuple[list[Piece], list[Distortion]]:
@@ -109,33 +154,60 @@ def _flatten(args: argparse.Namespace, mesh: Mesh, simplified: list[Simplified])
     from skinfab.seams.cut import open_pieces
 
     if args.method == "bff-cones":
-        from skinfab.seams.cones import flatten_with_cones
-
-        wanted = args.cones or "auto"
-        listed = _vertices(wanted) if isinstance(wanted, list) else None
-        count = wanted if isinstance(wanted, int) else None
-        _, piece, uv, _ = flatten_with_cones(mesh, cones=listed, count=count)
-        return _as_pieces(mesh, [piece], [uv])
+        return _with_cones(mesh, args.cones)
     opened = open_pieces(mesh, mesh.topology.is_boundary)
     flatten = _method(args, simplified)
     if args.method == "auto":
-        if all(_has_border_and_no_handle(piece) for piece in opened):
+        why = next((reason for piece in opened if (reason := _must_be_cut(piece))), "")
+        if not why:
             pieces, distortions = _as_pieces(mesh, opened, [flatten(mesh.V[p.vertices], p.F, topology=p.topology) for p in opened])
-            # A tube, open at both ends, is a disk with a hole too: where it would stretch too far it is cut.
-            lie = [p.is_disk or d.mean <= args.max_distortion for p, d in zip(opened, distortions, strict=True)]
-            if all(lie) and not any(d.overlap_mm2 > 0 or d.flipped for d in distortions):
+            pieces, distortions = _kept_apart(mesh, opened, pieces, distortions)
+            if any(d.overlap_mm2 > 0 or d.flipped for d in distortions):
+                why = "laid flat in one go the surface would cover itself"
+            elif any(_is_tube(mesh, p) and d.mean > args.max_distortion for p, d in zip(opened, distortions, strict=True)):
+                why = "the surface is a tube, which would stretch too far"
+            else:
                 return pieces, distortions
         if args.simplify != "off":
             simplified.clear()
             steps.say(["--simplify has no part in an automatic cut, whose pieces are flattened on all their triangles"])
-        return _cut(mesh, args.max_distortion)
+        return _cut(mesh, args.max_distortion, why)
     return _as_pieces(mesh, opened, [flatten(mesh.V[p.vertices], p.F, topology=p.topology) for p in opened])
 
 
-def _has_border_and_no_handle(piece: OpenPiece) -> bool:
-    """A disk, with holes or without."""
+def _must_be_cut(piece: OpenPiece) -> str:
+    """Why a piece is no disk, with holes or without; empty where it is one."""
     loops = len(piece.topology.boundary_loops)
-    return loops > 0 and piece.topology.euler == 2 - loops
+    if not loops:
+        return "the surface is closed"
+    return "" if piece.topology.euler == 2 - loops else "the surface has a handle"
+
+
+def _is_tube(mesh: Mesh, piece: OpenPiece) -> bool:
+    """A hole at least half as wide as the border is the other end of a tube."""
+    import numpy as np
+
+    V = mesh.V[piece.vertices]
+    widths = sorted(float(np.linalg.norm(np.ptp(V[loop], axis=0))) for loop in piece.topology.boundary_loops)
+    return len(widths) > 1 and 2 * widths[-2] >= widths[-1]
+
+
+def _kept_apart(
+    mesh: Mesh, opened: list[OpenPiece], pieces: list[Piece], distortions: list[Distortion]
+) -> tuple[list[Piece], list[Distortion]]:
+    """Pieces that cover themselves are laid out anew so that they do not."""
+    from skinfab.flatten.methods import method
+
+    over = [d.overlap_mm2 > 0 for d in distortions]
+    if not any(over):
+        return pieces, distortions
+    steps.say(["laid flat in one go the surface covers itself, so its boundary is kept from crossing itself, as by --method bijective"])
+    apart = method("bijective")
+    layouts = [
+        apart(mesh.V[p.vertices], p.F, topology=p.topology) if again else piece.UV
+        for p, piece, again in zip(opened, pieces, over, strict=True)
+    ]
+    return _as_pieces(mesh, opened, layouts)
 
 
 def _method(args: argparse.Namespace, simplified: list[Simplified]) -> Flatten:
@@ -156,14 +228,14 @@ def _method(args: argparse.Namespace, simplified: list[Simplified]) -> Flatten:
     return flatten
 
 
-def _cut(mesh: Mesh, max_distortion: float) -> tuple[list[Piece], list[Distortion]]:
+def _cut(mesh: Mesh, max_distortion: float, why: str) -> tuple[list[Piece], list[Distortion]]:
     from skinfab.progress import terminal_progress
     from skinfab.seams.auto import find_seams
     from skinfab.seams.finish import finish
     from skinfab.seams.judge import Limits
     from skinfab.seams.pieces import to_pieces
 
-    steps.say(["the surface cannot lie flat in one go, so it is cut automatically"])
+    steps.say([f"{why}, so it is cut automatically"])
     with terminal_progress() as progress:
         limits = Limits(mean=max_distortion)
         seams = find_seams(mesh, limits, progress=lambda done: progress(done, "cutting and flattening"))
@@ -173,10 +245,29 @@ def _cut(mesh: Mesh, max_distortion: float) -> tuple[list[Piece], list[Distortio
     return list(named), [by_first_face[int(p.faces[0])] for p in named]
 
 
-def _vertices(numbers: list[int]) -> NDArray[np.int64]:
+def _with_cones(mesh: Mesh, wanted: str | int | list[tuple[int, float | None]] | None) -> tuple[list[Piece], list[Distortion]]:
     import numpy as np
 
-    return np.array(numbers, dtype=np.int64)
+    from skinfab.errors import InputError, RefusedError
+    from skinfab.seams.cones import flatten_with_cones
+    from skinfab.tolerances import OVERLAP_FRACTION
+
+    vertices = angles = None
+    if isinstance(wanted, list):
+        vertices = np.array([vertex for vertex, _ in wanted], dtype=np.int64)
+        degrees = [angle for _, angle in wanted if angle is not None]
+        if degrees and len(degrees) < len(wanted):
+            raise InputError(f"{len(degrees)} of {len(wanted)} cones have an angle; give all of them one, or none")
+        angles = np.radians(degrees) if degrees else None
+    count = wanted if isinstance(wanted, int) else None
+    _, piece, uv, placed = flatten_with_cones(mesh, cones=vertices, angles=angles, count=count)
+    pieces, distortions = _as_pieces(mesh, [piece], [uv])
+    if not (over := distortions[0].overlap_mm2) <= OVERLAP_FRACTION * pieces[0].area:
+        raise RefusedError(
+            f"laid flat with {len(placed)} cones the surface covers {over:.3g} mm^2 twice; cones suit near-polyhedra and plain "
+            f"round bodies, so use --method auto, or other cones"
+        )
+    return pieces, distortions
 
 
 def _as_pieces(mesh: Mesh, opened: list[OpenPiece], layouts: list[NDArray[np.float64]]) -> tuple[list[Piece], list[Distortion]]:
@@ -189,58 +280,27 @@ def _as_pieces(mesh: Mesh, opened: list[OpenPiece], layouts: list[NDArray[np.flo
     return pieces, [measure(p.V(mesh), p.F, p.UV, topology=p.topology) for p in pieces]
 
 
+def _at_kept_area(mesh: Mesh, pieces: list[Piece]) -> tuple[list[Piece], list[Distortion]]:
+    from dataclasses import replace
+
+    import numpy as np
+
+    from skinfab.flatten.distortion import measure
+
+    scaled = [replace(p, UV=p.UV * np.sqrt(mesh.face_areas[p.faces].sum() / p.area), known=p.topology) for p in pieces]
+    return scaled, [measure(p.V(mesh), p.F, p.UV, topology=p.topology) for p in scaled]
+
+
 def _require_sound(method: str, pieces: list[Piece], distortions: list[Distortion]) -> None:
     from skinfab.errors import RefusedError
-    from skinfab.tolerances import OVERLAP_FRACTION
+    from skinfab.tolerances import OVERLAP_FRACTION, WILD_DISTORTION
 
     for piece, d in zip(pieces, distortions, strict=True):
         if d.flipped:
             raise RefusedError(f"{method} turned {d.flipped} of {len(piece.F)} triangles of {piece.id} over; use --method auto")
+        if d.mean > WILD_DISTORTION:
+            raise RefusedError(f"{method} stretched {piece.id} beyond use (mean d {d.mean:.3g}, 4 is perfect); use --method auto")
         if not d.overlap_mm2 <= OVERLAP_FRACTION * piece.area:
-            raise RefusedError(f"laid flat by {method}, {piece.id} covers {d.overlap_mm2:.3g} mm^2 twice; use --method auto, which cuts it")
-
-
-def _overall(mesh: Mesh, pieces: list[Piece], distortions: list[Distortion]) -> tuple[float, float]:
-    """Mean d over the object's area, and the largest."""
-    import numpy as np
-
-    if len(pieces) == 1:
-        return distortions[0].mean, distortions[0].max
-    areas = [mesh.face_areas[p.faces].sum() for p in pieces]
-    return float(np.average([d.mean for d in distortions], weights=areas)), max(d.max for d in distortions)
-
-
-def _figures(method: str, mesh: Mesh, pieces: list[Piece], distortions: list[Distortion], seconds: float) -> dict[str, Any]:
-    import numpy as np
-
-    from skinfab.flatten.distortion import distortion_of, singular_values
-
-    areas = np.array([mesh.face_areas[p.faces].sum() for p in pieces])
-    kept = []
-    for piece, area in zip(pieces, areas, strict=True):
-        # The same shape at the scale that keeps the object's area: the other common choice.
-        s = singular_values(piece.V(mesh), piece.F, piece.UV) * np.sqrt(area / piece.area)
-        real = mesh.face_areas[piece.faces] > 0
-        kept.append(float(np.average(distortion_of(s)[real], weights=mesh.face_areas[piece.faces][real])))
-    mean, most = _overall(mesh, pieces, distortions)
-    return {
-        "method": method,
-        "n_faces": len(mesh.F),
-        "pieces": [
-            {
-                "id": p.id,
-                "n_faces": len(p.F),
-                "distortion": {"mean": d.mean, "p95": d.p95, "p99": d.p99, "max": d.max},
-                "mean_at_kept_area": k,
-                "flipped": d.flipped,
-                "overlap_mm2": d.overlap_mm2,
-            }
-            for p, d, k in zip(pieces, distortions, kept, strict=True)
-        ],
-        "distortion": {
-            "mean": mean,
-            "mean_at_kept_area": float(np.average(kept, weights=areas)),
-            "max": most,
-        },
-        "flatten_s": seconds,
-    }
+            raise RefusedError(
+                f"laid flat by {method}, {piece.id} covers {d.overlap_mm2:.3g} mm^2 twice; use --method bijective, or auto, which also cuts"
+            )

@@ -12,7 +12,7 @@ import igl
 import numpy as np
 from numpy.typing import NDArray
 
-from skinfab.errors import RefusedError
+from skinfab.errors import InputError, RefusedError
 from skinfab.flatten.distortion import best_scale, singular_values
 from skinfab.flatten.holes import border_of, fill_holes
 from skinfab.flatten.overlap import overlap_area
@@ -32,6 +32,8 @@ def lscm(V: FloatArray, F: IntArray, *, topology: Topology | None = None) -> Flo
     topology = topology or Topology(F)
     loop = topology.boundary_loops[border_of(V, topology)]
     far = int(np.argmax(np.linalg.norm(V[loop] - V[loop[0]], axis=1)))
+    if not np.any(V[loop[far]] != V[loop[0]]):
+        raise InputError("the whole border lies in one point, so that lscm has nothing to hold; cut the surface open elsewhere")
     held = np.array([loop[0], loop[far]], dtype=np.int64)
     with _spoken_for("lscm"):
         uv = igl.lscm(V, F, held, np.array([[0.0, 0.0], [1.0, 0.0]]))[0]
@@ -97,7 +99,11 @@ def _slim(V: FloatArray, F: IntArray, start: FloatArray) -> FloatArray:
         np.zeros((0, 2), order="F"),
         0.0,
     )
-    return np.asarray(igl.slim_solve(data, _ITERATIONS))[:, :2]
+    laid = start
+    # One by one, so that an interrupt gets through on large meshes.
+    for _ in range(_ITERATIONS):
+        laid = np.asarray(igl.slim_solve(data, 1))[:, :2]
+    return laid
 
 
 @contextmanager

@@ -7,13 +7,15 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from skinfab.errors import InputError
 from skinfab.flatten.bff import flatten_disk
+from skinfab.flatten.distortion import best_scale, measure, shaped_areas
 from skinfab.flatten.isometric import MOST_STEPS, IsometricSolver, Refinement
 from skinfab.flatten.rigid_start import rigid_steps
 from skinfab.flatten.robust import turned_over
 from skinfab.flatten.tutte import tutte_embedding
 from skinfab.mesh.topology import Topology
-from skinfab.tolerances import FLAT_START, NEWTON_DECREASE
+from skinfab.tolerances import FLAT_START, NEWTON_DECREASE, SIMPLIFY_EFFECT
 
 FloatArray = NDArray[np.float64]
 Say = Callable[[str], object]
@@ -55,11 +57,26 @@ def flatten_isometric(
     Raises
     ------
     InputError
-        Not a disk, or a triangle has no area.
+        Not a disk, or too many triangles have no area.
     """
     topology = topology or Topology(F)
     uv = flatten_disk(V, F, topology=topology)
-    return lower(V, F, uv, topology=topology, tolerance=tolerance, hopeless_above=hopeless_above, say=say).UV
+    found = lower(V, F, uv, topology=topology, tolerance=tolerance, hopeless_above=hopeless_above, say=say)
+    _require_better(V, F, uv, found.UV)
+    return found.UV
+
+
+def _require_better(V: FloatArray, F: NDArray[np.int64], bff: FloatArray, found: FloatArray) -> None:
+    """Where many triangles have no area, the widths that they are given contradict each other and the steps end far off."""
+    shaped = shaped_areas(V, F)[1]
+    if shaped.all():
+        return
+    before, after = measure(V, F[shaped], bff * best_scale(V, F, bff)), measure(V, F[shaped], found)
+    if before.flipped == 0 and after.mean > before.mean + SIMPLIFY_EFFECT:
+        raise InputError(
+            f"{(~shaped).sum()} triangles have no area (first: face {int(np.argmin(shaped))}), too many to be laid flat with the "
+            "others; clean the mesh first (skinfab.mesh.repair.clean), or use bff"
+        )
 
 
 def lower(

@@ -30,6 +30,8 @@ class Distortion:
     d : (m,) float
         Per triangle; infinite where a triangle collapsed; 4 where it has no area on the object to begin with
         (no shape that could be distorted: such triangles count nowhere).
+    angle, area : (m,) float
+        The two parts of d = angle x area, each 2 where perfect: s1/s2 + s2/s1, of the shape, and s1 s2 + 1/(s1 s2), of the size.
     mean, p95, p99, max : float
         Area-weighted mean and quantiles of d, and its largest value.
     flipped : int
@@ -39,6 +41,8 @@ class Distortion:
     """
 
     d: FloatArray
+    angle: FloatArray
+    area: FloatArray
     mean: float
     p95: float
     p99: float
@@ -86,7 +90,7 @@ def _entries(rest: tuple[FloatArray, FloatArray, FloatArray], F: NDArray[np.int6
     return tuple(out)
 
 
-def _stretch(V: FloatArray, F: NDArray[np.int64], UV: FloatArray) -> tuple[FloatArray, FloatArray]:
+def stretch(V: FloatArray, F: NDArray[np.int64], UV: FloatArray) -> tuple[FloatArray, FloatArray]:
     """s1^2 + s2^2 and s1 s2 of each triangle, (m,) each: d needs no more."""
     a, b, c, d = _entries(_in_plane(V, F), F, UV)
     with np.errstate(invalid="ignore"):
@@ -133,16 +137,21 @@ def measure(V: FloatArray, F: NDArray[np.int64], UV: FloatArray, *, topology: To
     >>> measure(V, np.array([[0, 1, 2], [0, 2, 3]]), V[:, :2])
     Distortion(mean 4.0000, p95 4.0000, p99 4.0000, max 4.0000, 0 flipped, overlap 0 mm^2)
     """
-    square, product = _stretch(V, F, UV)
+    square, product = stretch(V, F, UV)
     area, real = shaped_areas(V, F)
     with np.errstate(divide="ignore", invalid="ignore"):
-        d = square * (1 + 1 / product**2)
+        # s1^2 + s2^2 + s1^-2 + s2^-2 = (s1/s2 + s2/s1) (s1 s2 + 1 / (s1 s2))
+        parts = square / np.abs(product), np.abs(product + 1 / product)
+        d = parts[0] * parts[1]
     d = np.where(real, np.where(np.isfinite(d), d, np.inf), 4.0)
+    angle, swelling = (np.where(real, np.where(np.isfinite(part), part, np.inf), 2.0) for part in parts)
     order = np.argsort(d)
     share = np.cumsum(area[order]) / area.sum()
     p95, p99 = (float(d[order[min(int(np.searchsorted(share, q)), len(d) - 1)]]) for q in (0.95, 0.99))
     return Distortion(
         d=d,
+        angle=angle,
+        area=swelling,
         mean=float(np.average(d, weights=area)),
         p95=p95,
         p99=p99,
@@ -152,12 +161,18 @@ def measure(V: FloatArray, F: NDArray[np.int64], UV: FloatArray, *, topology: To
     )
 
 
+def mean_over(values: FloatArray, areas: FloatArray) -> float:
+    """Mean by area of what is said of each triangle; those without area count nowhere, whatever is said of them."""
+    real = areas > 0
+    return float(np.average(values[real], weights=areas[real]))
+
+
 def best_scale(V: FloatArray, F: NDArray[np.int64], UV: FloatArray) -> float:
     """The factor on `UV` that makes the mean d smallest.
 
     Scaling by t turns the mean into t^2 P + Q / t^2, least at t = (Q / P)^(1/4).
     """
-    square, product = _stretch(V, F, UV)
+    square, product = stretch(V, F, UV)
     area, real = shaped_areas(V, F)
     good = real & (product > 0)
     if not good.any():

@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skinfab.errors import InputError
-from skinfab.flatten.distortion import best_scale, singular_values
+from skinfab.flatten.distortion import best_scale, shaped_areas, singular_values
 from skinfab.flatten.robust import flatten_robust
+from skinfab.mesh.inspect import inspect
 from skinfab.mesh.polygons import triangulate
 from skinfab.mesh.topology import Topology
 from skinfab.tolerances import FLAT_START, OVERLAP_FRACTION
@@ -40,6 +41,12 @@ def border_of(V: FloatArray, topology: Topology) -> int:
     if len(topology.F) and (topology.F.min() < 0 or topology.F.max() >= len(V)):
         face = int(np.flatnonzero(((topology.F < 0) | (topology.F >= len(V))).any(axis=1))[0])
         raise InputError(f"face {face} uses vertices {topology.F[face].tolist()}; there are 0 to {len(V) - 1}, so mend the mesh")
+    F = topology.F
+    if not topology.is_oriented_manifold:
+        for fault in inspect(V, F).faults:
+            # Vertices of two fans and unused ones are told below in the words of holes and borders.
+            if fault.mended_by != "nothing" and not fault.first.startswith("vertex"):
+                raise InputError(f"the surface has a {fault.kind} (first: {fault.first}); mend the mesh first (skinfab.mesh.repair)")
     loops = topology.boundary_loops
     components, _ = topology.face_components()
     unused = len(V) - len(topology.used_vertices)
@@ -58,6 +65,8 @@ def border_of(V: FloatArray, topology: Topology) -> int:
     if not np.isfinite(V).all():
         wrong = int(np.flatnonzero(~np.isfinite(V).all(axis=1))[0])
         raise InputError(f"vertex {wrong} has a coordinate that is not a finite number; mend it in the mesh")
+    if not shaped_areas(V, F)[1].any():
+        raise InputError(f"none of the {len(F)} triangles has an area, so that there is nothing to lay flat; check the mesh")
     return int(np.argmax([_width(V[loop]) for loop in loops]))
 
 
@@ -234,6 +243,35 @@ def flatten_least(
     if overlap_area(F, freed, topology=topology) <= overlap_area(F, filled, topology=topology) + _nothing(freed):
         return freed
     return filled
+
+
+def flatten_apart(V: FloatArray, F: IntArray, *, topology: Topology | None = None) -> FloatArray:
+    """The least mean d without overlap of a surface with or without holes: `flatten_bijective` with its holes filled.
+
+    Parameters
+    ----------
+    V : (n, 3) float64, mm
+    F : (m, 3) int64
+        One component of genus 0 with a boundary; every vertex in use.
+    topology : Topology, optional
+        Of `F`, where it is at hand.
+
+    Returns
+    -------
+    (n, 2) float64, mm
+        No triangle is flipped, and nothing is covered twice.
+
+    Raises
+    ------
+    InputError
+        Even with its holes filled it is no disk: closed, with a handle, or in several components.
+    """
+    from skinfab.flatten.bijective import flatten_bijective
+
+    topology = topology or Topology(F)
+    W, G = fill_holes(V, F, topology=topology)
+    uv = flatten_bijective(W, G, topology=topology if G is F else None)
+    return uv if G is F else uv[: len(V)] * best_scale(V, F, uv[: len(V)])
 
 
 def _nothing(UV: FloatArray) -> float:

@@ -11,6 +11,7 @@ from skinfab.errors import InputError
 from skinfab.flatten.locate import Locator
 from skinfab.mesh.model import Mesh
 from skinfab.pieces import Piece
+from skinfab.tolerances import WEIGHT_SUM
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -80,11 +81,15 @@ class FlatMap:
         Raises
         ------
         InputError
-            A face that is not on this piece, or not three weights for each face.
+            A face that is not on this piece, or not three weights of sum 1 for each face.
         """
         faces, weights = np.asarray(face, dtype=np.int64).reshape(-1), np.asarray(barycentric, dtype=np.float64)
         if weights.shape != (len(faces), 3):
             raise InputError(f"{len(faces)} faces need as many rows of three barycentric weights; these have the shape {weights.shape}")
+        wrong = ~(np.abs(weights.sum(axis=1) - 1) <= WEIGHT_SUM)
+        if wrong.any():
+            k = int(np.argmax(wrong))
+            raise InputError(f"point {k}: barycentric weights sum to 1; these are {weights[k].tolist()}")
         inside = (faces >= 0) & (faces < len(self._local))
         local = np.where(inside, self._local[np.where(inside, faces, 0)], -1)
         if (local < 0).any():

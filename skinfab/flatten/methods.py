@@ -8,13 +8,15 @@ so that a fast method does not wait for another's library.
 from __future__ import annotations
 
 from importlib import import_module
-from typing import Protocol
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import TYPE_CHECKING, Protocol
 
 from skinfab.errors import InputError
-from skinfab.mesh.topology import Topology
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from skinfab.mesh.topology import Topology
 
 
 class Flatten(Protocol):
@@ -26,6 +28,7 @@ class Flatten(Protocol):
 METHODS = {
     "bff": "skinfab.flatten.holes:flatten_filled",
     "isometric": "skinfab.flatten.holes:flatten_least",
+    "bijective": "skinfab.flatten.holes:flatten_apart",
     "lscm": "skinfab.flatten.classic:lscm",
     "harmonic": "skinfab.flatten.classic:harmonic",
     "arap": "skinfab.flatten.classic:arap",

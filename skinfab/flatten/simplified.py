@@ -62,7 +62,7 @@ class Simplified:
         """What was done, for the user."""
         if not self.n_coarse:
             return f"flattened on all {self.n_faces} triangles: {self.why}"
-        return f"flattened on {self.n_coarse} of {self.n_faces} triangles; on all of them the mean d is at most {self.effect:.2g} less"
+        return f"flattened on {self.n_coarse} of {self.n_faces} triangles; that costs at most {self.effect:.1g} of the mean d"
 
 
 def flatten_simplified(

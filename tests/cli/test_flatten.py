@@ -54,7 +54,7 @@ def test_holes_and_components_one_by_one(method: str, tmp_path: Path, capsys: py
     W, G = shapes.grid(4, 4)
     mesh = written(tmp_path, np.vstack([5 * V, 20 * W + [0, 0, 30]]), np.vstack([F, G + len(V)]))
     assert main(["flatten", mesh, "-o", str(tmp_path / "o.obj"), "--method", method, "--json", str(tmp_path / "f.json")]) == 0
-    assert "cut" not in capsys.readouterr().err
+    assert "cut automatically" not in capsys.readouterr().err
     figures = json.loads((tmp_path / "f.json").read_text())
     assert [p["n_faces"] for p in figures["pieces"]] == [len(F), len(G)]
     exact = 2.0 if method == "harmonic" else 1e-6
@@ -149,7 +149,7 @@ def test_simplify_says_what_it_did_and_keeps_d(tmp_path: Path, capsys: pytest.Ca
     (said,) = json.loads((tmp_path / "auto.json").read_text())["simplified"]
     assert "simplified" not in json.loads((tmp_path / "off.json").read_text())
     assert means[1] - means[0] <= said["effect"] < 0.002 and 0 < said["n_coarse"] < said["n_faces"] / 15
-    assert f"note: flattened on {said['n_coarse']} of {said['n_faces']} triangles; on all of them" in capsys.readouterr().err
+    assert f"note: flattened on {said['n_coarse']} of {said['n_faces']} triangles; that costs at most" in capsys.readouterr().err
 
 
 def test_simplify_leaves_what_is_small_and_what_is_cut(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -176,3 +176,56 @@ def test_untangling_is_said(method: str, tmp_path: Path, capsys: pytest.CaptureF
     assert main([*command, "--method", method]) == 0
     notes = [line for line in capsys.readouterr().err.splitlines() if "begun anew" in line]
     assert len(notes) == 1 and notes[0].startswith("note: boundary first flattening turned")
+
+
+def test_small_holes_are_no_reason_to_cut(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A dome that stretches too far is left whole, with small holes as without; a tube is cut."""
+    V, F = shapes.cap(12, 1.5)
+    middle = V[F].mean(axis=1)
+    away = np.linalg.norm(middle[:, :2] - [0.3, 0.2], axis=1) > 0.12
+    used, local = np.unique(F[away], return_inverse=True)
+    mesh = written(tmp_path, 30 * V[used], local.reshape(-1, 3))
+    assert main(["flatten", mesh, "-o", str(tmp_path / "o.obj")]) == 0
+    said = capsys.readouterr()
+    assert "cut automatically" not in said.err and "more than a skin stands" in said.err and "1 piece by" in said.out
+    assert len(results.read_flat_obj(tmp_path / "o.obj")[1]) == len(used)
+
+
+def test_a_layout_beyond_use_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """lscm lays a long tube around a point, each ring many times the last: flips as soon as it is written."""
+    mesh = written(tmp_path, *tube(48, 14))
+    assert main(["flatten", mesh, "-o", str(tmp_path / "o.obj"), "--method", "lscm"]) == 3
+    assert "beyond use" in capsys.readouterr().err and not (tmp_path / "o.obj").exists()
+
+
+@pytest.mark.parametrize(
+    ("out", "json_file", "says"),
+    [
+        ("mesh.obj", None, "is the mesh itself"),
+        ("nowhere/o.obj", None, "its folder does not exist"),
+        ("o.obj", "nowhere/o.json", "its folder does not exist"),
+        ("o.obj", ".", "it is a folder"),
+        ("o.obj", "o.obj", "give --json another file"),
+        ("o.obj", "mesh.obj", "is the mesh itself"),
+    ],
+)
+def test_places_are_looked_at_first(out: str, json_file: str | None, says: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    mesh = Path(written(tmp_path, *shapes.wavy()))
+    before = mesh.read_bytes()
+    words = ["--json", str(tmp_path / json_file)] if json_file else []
+    assert main(["flatten", str(mesh), "-o", str(tmp_path / out), *words]) == 1
+    assert says in capsys.readouterr().err
+    assert mesh.read_bytes() == before and list(tmp_path.iterdir()) == [mesh]
+
+
+def test_figures_say_what_was_flattened_and_how(tmp_path: Path) -> None:
+    V, F = shapes.cap(8, 0.8)
+    mesh = written(tmp_path, V * 0.03, F)
+    assert main(["flatten", mesh, "-o", str(tmp_path / "o.obj"), "--json", str(tmp_path / "o.json"), "--keep-area", "--units", "m"]) == 0
+    figures = json.loads((tmp_path / "o.json").read_text())
+    assert figures["mesh"]["units"] == "m" and figures["mesh"]["scale"] == 1000 and figures["within"] is True
+    (piece,) = figures["pieces"]
+    assert piece["area_mm2"] == pytest.approx(piece["area_on_object_mm2"], rel=1e-9)
+    assert piece["distortion"]["mean"] == pytest.approx(piece["mean_at_kept_area"], rel=1e-9)
+    # The parts are of each triangle; their means multiply to no less than nearly d.
+    assert 2 <= piece["angle_mean"] < 2.1 and 2 <= piece["area_mean"] < 2.1

@@ -6,9 +6,12 @@ import shapes
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from skinfab.bench.disks import bumpy_cap
+from skinfab.errors import InputError
+from skinfab.flatten import disk
 from skinfab.flatten.bff import flatten_disk
 from skinfab.flatten.disk import flatten_isometric, lower
-from skinfab.flatten.distortion import best_scale, measure, singular_values
+from skinfab.flatten.distortion import best_scale, measure, shaped_areas, singular_values
 
 
 @settings(max_examples=20, deadline=None)
@@ -72,3 +75,21 @@ def test_a_triangle_without_width_is_untangled_too() -> None:
     V, F = shapes.random_disk(0, 100, 0.3)
     lower(V, F, V[:, :2] * [1.0, 1e-14], say=told.append)
     assert "begun anew" in told[0]
+
+
+def test_so_many_triangles_without_area_that_it_would_be_worse_than_bff() -> None:
+    V, F = shapes.wavy()
+    V = np.round(V * 10) / 10
+    assert (~shaped_areas(V, F)[1]).sum() > 20
+    with pytest.raises(InputError, match=r"triangles have no area .*clean the mesh first"):
+        flatten_isometric(V, F)
+
+
+@pytest.mark.parametrize("n", [4000, 6000])
+def test_rigid_steps_on_large_meshes_only(n: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    V, F = bumpy_cap(n)
+    taken = []
+    real = disk.rigid_steps
+    monkeypatch.setattr(disk, "rigid_steps", lambda *a, **k: (taken.append(k["steps"]), real(*a, **k))[1])
+    flatten_isometric(V, F)
+    assert taken == ([2] if len(F) >= 5000 else [])

@@ -126,3 +126,16 @@ def test_best_scale_beats_every_other(seed: int) -> None:
     scan = best * np.geomspace(0.5, 2, 201)  # the middle one is `best` itself
     means = [measure(V, F, UV * t).mean for t in scan]
     assert np.argmin(means) == 100
+
+
+def test_d_is_its_angle_part_times_its_area_part() -> None:
+    V, F = shapes.wavy()
+    uv = V[:, :2] * [1.3, 0.8]
+    found, s = measure(V, F, uv), singular_values(V, F, uv)
+    np.testing.assert_allclose(found.angle, s[:, 0] / s[:, 1] + s[:, 1] / s[:, 0])
+    np.testing.assert_allclose(found.area, s.prod(axis=1) + 1 / s.prod(axis=1))
+    np.testing.assert_allclose(found.d, distortion_of(s))
+    flat, G = shapes.grid(3, 3)
+    scaled = measure(flat, G, 2 * flat[:, :2])
+    np.testing.assert_allclose(scaled.angle, 2)  # as large again, but every angle kept
+    np.testing.assert_allclose(scaled.area, 4.25)

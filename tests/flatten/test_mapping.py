@@ -109,3 +109,10 @@ def test_a_hundred_thousand_points_there_and_back() -> None:
     back = both_ways.to_object(both_ways.to_flat(faces, weights))
     at = np.einsum("ik,ikj->ij", weights, mesh.V[mesh.F[faces]])
     np.testing.assert_allclose(back.xyz, at, atol=1e-9)
+
+
+@pytest.mark.parametrize("weights", [[1.0, 1.0, 1.0], [np.nan, 0.5, 0.5], [0.0, 0.0, 0.0]])
+def test_weights_that_are_none_are_refused(weights: list[float]) -> None:
+    mesh, (piece, _) = halves()
+    with pytest.raises(InputError, match="point 0: barycentric weights sum to 1"):
+        FlatMap(mesh, piece).to_flat(piece.faces[:1], [weights])

@@ -5,7 +5,7 @@ import pytest
 import shapes
 
 from skinfab.errors import InputError
-from skinfab.flatten.distortion import measure, singular_values
+from skinfab.flatten.distortion import best_scale, measure, singular_values
 from skinfab.flatten.methods import METHODS, method
 
 
@@ -82,3 +82,32 @@ def test_coordinates_that_are_no_numbers_are_named(name: str) -> None:
 def test_names_what_there_is() -> None:
     with pytest.raises(InputError, match="no flattening method 'bfff'; there are bff, "):
         method("bfff")
+
+
+@pytest.mark.parametrize("name", METHODS)
+@pytest.mark.parametrize("squash", [[0, 0, 0], [1, 0, 0], [1e-170, 1e-170, 1e-170]])
+def test_no_area_at_all_is_refused(name: str, squash: list[float]) -> None:
+    """libigl's lscm ended the process here, sooner or later: both of its held vertices were the same."""
+    V, F = shapes.wavy()
+    with pytest.raises(InputError, match=r"none of the .* has an area"):
+        method(name)(V * squash, F)
+
+
+@pytest.mark.parametrize("name", METHODS)
+def test_faults_of_the_mesh_are_named(name: str) -> None:
+    V, F = shapes.wavy()
+    for G, says in (
+        (np.vstack([F, [[0, 0, 1]]]), "a corner twice.*first: face 288"),
+        (np.vstack([F, F[:1]]), "duplicate face .first: face"),
+        (np.vstack([F[:-1], F[-1:, ::-1]]), "inconsistent winding .first: edge"),
+        (np.vstack([F[:-1], [[0, 1, 10_000]]]), "face 287 uses vertices"),
+    ):
+        with pytest.raises(InputError, match=says):
+            method(name)(V, G)
+
+
+def test_the_scale_is_that_of_the_least_d() -> None:
+    V, F = shapes.cap(8, 1.0)
+    for name in METHODS:
+        uv = method(name)(V, F)
+        assert best_scale(V, F, uv) == pytest.approx(1, abs=1e-4), name
