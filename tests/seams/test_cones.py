@@ -1,9 +1,12 @@
 """Cutting through cones: the study's cube with 8 and dodecahedron with 20 lie flat without distortion."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 import shapes
 
+from skinfab.cli.main import main
 from skinfab.errors import InputError
 from skinfab.flatten.cones import cone_scale
 from skinfab.flatten.distortion import best_scale, measure
@@ -173,3 +176,39 @@ def test_the_nearest_point_is_joined_first() -> None:
 def test_what_cannot_be(mesh: Mesh, more, says: str) -> None:
     with pytest.raises(InputError, match=says):
         flatten_with_cones(mesh, **more)
+
+
+def written(folder: Path, V: np.ndarray, F: np.ndarray) -> str:
+    lines = ["v {:.17g} {:.17g} {:.17g}".format(*v) for v in V.tolist()] + ["f {} {} {}".format(*f) for f in (F + 1).tolist()]
+    (folder / "mesh.obj").write_text("\n".join(lines) + "\n")
+    return str(folder / "mesh.obj")
+
+
+@pytest.mark.parametrize(
+    ("cones", "status", "says"),
+    [
+        ("0:240,1:240,2:240,3:240,4:240,5:240", 0, "d mean 4.0000"),
+        ("0:240,1:240,2:240,3:240,4:240,5:250", 1, "sum to 1450 degrees; 6 cones on a closed surface of Euler number 2 must sum to 1440"),
+        ("0:240,1:240,2,3", 1, "2 of 4 cones have an angle; give all of them one, or none"),
+        ("0:x", 2, "such as 0,5,17 or 0:270,5:180"),
+        ("0:", 2, "neither auto, nor a number"),
+    ],
+)
+def test_angles_on_the_command_line_are_degrees(
+    cones: str, status: int, says: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    V, F = octahedron()
+    words = ["flatten", written(tmp_path, 30 * V, F), "-o", str(tmp_path / "o.obj"), "--method", "bff-cones", "--cones", cones]
+    assert main(words) == status
+    captured = capsys.readouterr()
+    assert says in captured.out + captured.err and (tmp_path / "o.obj").exists() == (status == 0)
+
+
+def test_a_net_that_covers_itself_is_refused_with_what_cones_are_for(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    V, F = shapes.torus()
+    _, piece, UV, _ = flatten_with_cones(Mesh(V, F), count=40)
+    assert measure(V[piece.vertices], piece.F, UV).overlap_mm2 > 0.01
+    assert main(["flatten", written(tmp_path, 30 * V, F), "-o", str(tmp_path / "o.obj"), "--method", "bff-cones", "--cones", "40"]) == 3
+    says = capsys.readouterr().err
+    assert "with 40 cones the surface covers" in says and "near-polyhedra and plain round bodies, so use --method auto" in says
+    assert not (tmp_path / "o.obj").exists()

@@ -145,10 +145,7 @@ def test_cones_on_a_crumpled_ball_are_refused(tmp_path: Path, capsys: pytest.Cap
     (tmp_path / "ball.obj").write_text("\n".join(lines) + "\n")
     words = ["flatten", str(tmp_path / "ball.obj"), "-o", str(tmp_path / "o.obj"), "--method", "bff-cones", "--cones", "8"]
     assert main(words) == 3
-    assert (
-        "triangles come out upside down or without area with 8 cones, which suit near-polyhedra only; use --method auto"
-        in capsys.readouterr().err
-    )
+    assert "triangles come out upside down or without area with 8 cones; cones suit near-polyhedra and plain" in capsys.readouterr().err
     assert not (tmp_path / "o.obj").exists()
 
 
