@@ -84,20 +84,20 @@ def write_svg(skin: Skin, path: str | FilePath) -> None:
     body = _draw_legend(legend, bead)
     for k, (piece, offset) in enumerate(zip(skin.pieces, offsets, strict=True)):
         # SVG's y axis points down: the points are flipped here, so that text and arcs need no transform.
-        pen = _Pen(shift=offset + MARGIN_MM, height=height)
+        pen = SvgPen(shift=offset + MARGIN_MM, height=height)
         mine = [side for side in sides if side.piece == k]
         body.append(f'<g id={quoteattr(piece.id)} class="piece">')
         body.append(f'<path class="outline" d="{pen.polyline(piece.outline)}Z"/>')
         body += [line for side in mine for line in _seam_side(side, pen)]
         for sensor in skin.sensors_on(piece.id):
-            body.append(f'<g id={quoteattr(sensor.id)} class="sensor" stroke-width="{_number(sensor.pattern.bead)}">')
+            body.append(f'<g id={quoteattr(sensor.id)} class="sensor" stroke-width="{mm(sensor.pattern.bead)}">')
             body += [f'<path class="pad" d="{pen.path(pad)}"/>' for pad in pad_paths(sensor)]
             body.append(f'<path class="conductor" d="{pen.path(sensor.path)}"/>')
             body.append("</g>")
         body.append(f'<path class="origin" d="{"".join(pen.polyline(stroke) for stroke in origin_cross())}"/>')
         body += [pen.label(label) for label in piece_labels(piece, mine, skin.sensors_on(piece.id))]
         body.append("</g>")
-    w, h = _number(width), _number(height)
+    w, h = mm(width), mm(height)
     head = f'<svg xmlns="http://www.w3.org/2000/svg" width="{w}mm" height="{h}mm" viewBox="0 0 {w} {h}">'
     title = f"<title>{escape(skin.mesh.name)}: flat skin, 1:1</title>"
     atomic_write(path, "\n".join(['<?xml version="1.0" encoding="UTF-8"?>', head, title, f"<style>{_STYLE}</style>", *body, "</svg>", ""]))
@@ -124,20 +124,18 @@ def _draw_legend(rows: list[list[tuple[float, str, str]]], bead: float) -> list[
         for x, role, words in row:
             start = x
             if role == "origin":
-                arms = "".join(
-                    f"M{_number(x + 1.5 + a)} {_number(y + b)}L{_number(x + 1.5 + c)} {_number(y + d)}" for (a, b), (c, d) in origin_cross()
-                )
+                arms = "".join(f"M{mm(x + 1.5 + a)} {mm(y + b)}L{mm(x + 1.5 + c)} {mm(y + d)}" for (a, b), (c, d) in origin_cross())
                 out.append(f'<path class="key-stroke origin" d="{arms}"/>')
             elif role:
-                thick = f' stroke-width="{_number(bead)}"' if role in ("conductor", "pad") else ""
-                out.append(f'<path class="key-stroke {role}"{thick} d="M{_number(x)} {_number(y)}L{_number(x + ROW_MM)} {_number(y)}"/>')
+                thick = f' stroke-width="{mm(bead)}"' if role in ("conductor", "pad") else ""
+                out.append(f'<path class="key-stroke {role}"{thick} d="M{mm(x)} {mm(y)}L{mm(x + ROW_MM)} {mm(y)}"/>')
             if role:
                 start += ROW_MM + 1.0
-            out.append(f'<text class="key" x="{_number(start)}" y="{_number(y)}">{escape(words)}</text>')
+            out.append(f'<text class="key" x="{mm(start)}" y="{mm(y)}">{escape(words)}</text>')
     return [*out, "</g>"]
 
 
-def _seam_side(side: SeamSide, pen: _Pen) -> list[str]:
+def _seam_side(side: SeamSide, pen: SvgPen) -> list[str]:
     out = [f'<path class="{side.kind}" d="{pen.polyline(side.points)}"/>']
     if side.label:
         tip = side.notch + NOTCH_MM * side.inward
@@ -145,7 +143,7 @@ def _seam_side(side: SeamSide, pen: _Pen) -> list[str]:
     return out
 
 
-class _Pen:
+class SvgPen:
     """Piece frame to SVG text."""
 
     def __init__(self, *, shift: NDArray[np.float64], height: float) -> None:
@@ -153,7 +151,7 @@ class _Pen:
 
     def point(self, at: NDArray[np.float64]) -> str:
         x, y = at + self.shift
-        return f"{_number(x)} {_number(self.height - y)}"
+        return f"{mm(x)} {mm(self.height - y)}"
 
     def polyline(self, points: NDArray[np.float64]) -> str:
         return "M" + "L".join(self.point(p) for p in points)
@@ -165,7 +163,7 @@ class _Pen:
                 out.append(f"L{self.point(segment.end)}")
             else:
                 # Flag 1 turns clockwise on the screen, which is a negative sweep seen with y up.
-                r = _number(segment.radius)
+                r = mm(segment.radius)
                 out.append(f"A{r} {r} 0 0 {int(segment.sweep < 0)} {self.point(segment.end)}")
         return "".join(out)
 
@@ -174,7 +172,7 @@ class _Pen:
         return f'<text class="{_CLASS[label.kind]}" x="{x}" y="{y}">{escape(label.text)}</text>'
 
 
-def _number(value: float) -> str:
+def mm(value: float) -> str:
     """Six decimals, a nanometre, without trailing zeros or a negative zero."""
     text = f"{value:.6f}".rstrip("0").rstrip(".")
     return "0" if text == "-0" else text
