@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skinfab.drawings.strokes import pad_paths
-from skinfab.drawings.svg import SvgPen, svg_number
+from skinfab.drawings.svg import SvgPen, mm
 from skinfab.patterns.base import Dimension, Pattern
 from skinfab.placement.edit import middle_of
 from skinfab.placement.sensor import Sensor
@@ -48,19 +48,17 @@ def pattern_svg(pattern: Pattern) -> str:
     dimensions, frame = _laid_out(pattern.dimensions(), box, row)
     low, (width, height) = frame[0], np.ptp(frame, axis=0)
     pen = SvgPen(shift=-low, height=height)
-    body = [f'<rect width="{svg_number(width)}" height="{svg_number(height)}" fill="#fff"/>']
-    body += [f'<path class="pad" stroke-width="{svg_number(pattern.bead)}" d="{pen.path(pad)}"/>' for pad in pad_paths(sensor)]
-    body.append(f'<path class="conductor" stroke-width="{svg_number(pattern.bead)}" d="{pen.path(sensor.path)}"/>')
+    body = [f'<rect width="{mm(width)}" height="{mm(height)}" fill="#fff"/>']
+    body += [f'<path class="pad" stroke-width="{mm(pattern.bead)}" d="{pen.path(pad)}"/>' for pad in pad_paths(sensor)]
+    body.append(f'<path class="conductor" stroke-width="{mm(pattern.bead)}" d="{pen.path(sensor.path)}"/>')
     arm = np.array([0.3 * row, 0.0])
-    cross = [middle_of(sensor) + sign * a for a in (arm, arm[::-1]) for sign in (-1, 1)]
-    body.append(
-        f'<path class="middle" stroke-width="{svg_number(2 * thin)}" d="{pen.polyline(np.array(cross[:2]))}{pen.polyline(np.array(cross[2:]))}"/>'
-    )
+    cross = "".join(pen.polyline(middle_of(sensor) + np.outer([-1, 1], a)) for a in (arm, arm[::-1]))
+    body.append(f'<path class="middle" stroke-width="{mm(2 * thin)}" d="{cross}"/>')
     for name, strokes, at in dimensions:
-        body.append(f'<path class="dimension" stroke-width="{svg_number(thin)}" d="{"".join(pen.polyline(s) for s in strokes)}"/>')
+        body.append(f'<path class="dimension" stroke-width="{mm(thin)}" d="{"".join(pen.polyline(s) for s in strokes)}"/>')
         x, y = pen.point(at).split()
-        body.append(f'<text x="{x}" y="{y}" font-size="{svg_number(text)}" stroke-width="{svg_number(0.3 * text)}">{escape(name)}</text>')
-    w, h = svg_number(width), svg_number(height)
+        body.append(f'<text x="{x}" y="{y}" font-size="{mm(text)}" stroke-width="{mm(0.3 * text)}">{escape(name)}</text>')
+    w, h = mm(width), mm(height)
     head = (
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{_WIDTH_PX}" height="{round(_WIDTH_PX * height / width)}" viewBox="0 0 {w} {h}">'
     )
