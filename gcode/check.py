@@ -10,9 +10,10 @@ from collections.abc import Iterator
 
 from gcode.check_commands import command_findings
 from gcode.check_file import file_findings
+from gcode.check_grbl import grbl_findings
 from gcode.check_height import height_findings
+from gcode.emit import emit
 from gcode.geometry import Curve, Straight
-from gcode.marlin import emit
 from gcode.printer import Printer
 from gcode.program import E_DECIMALS, F_DECIMALS, XY_DECIMALS, Comment, Prime, Program, Retract
 from gcode.trace import Finding, Move, Trace, trace
@@ -48,13 +49,13 @@ def check_text(text: str, printer: Printer) -> tuple[Finding, ...]:
     ...     print(finding)
     line 6: it reaches X355.0000, the bed ends at X350.0000; move the pattern inward or choose a larger printer
     """
-    judged = trace(text)
+    judged = trace(text, spindle=printer.spindle)
     findings = [
         *file_findings(judged, printer),
         *judged.faults,
-        *command_findings(judged, printer),
+        *(grbl_findings(judged) if printer.spindle else command_findings(judged, printer)),
         *height_findings(judged, printer),
-        *_retracts(judged),
+        *_retracts(judged, "mm^3 of ink" if printer.spindle else "mm of E"),
     ]
     for move in judged.moves:
         for what, remedy in _faults_of(move, printer):
@@ -149,7 +150,7 @@ def _too_fast(speed: float, limit: float, why: str) -> tuple[str, str]:
     return f"F{speed * 60:.1f} is above F{limit * 60:.1f}, the limit of {why}", f"lower F to {math.floor(limit * 600) / 10:.1f}"
 
 
-def _retracts(judged: Trace) -> Iterator[Finding]:
+def _retracts(judged: Trace, unit: str) -> Iterator[Finding]:
     """Each pattern must start with the nozzle as full as the one before it did."""
     balance, first, last_change, laid = 0.0, None, 0, False
     for move in judged.moves:
@@ -162,7 +163,7 @@ def _retracts(judged: Trace) -> Iterator[Finding]:
                 change = "more" if balance > first else "less"
                 yield Finding(
                     last_change,
-                    f"the nozzle then holds {abs(balance - first):.5f} mm of E {change} than at the first pattern's start",
+                    f"the nozzle then holds {abs(balance - first):.5f} {unit} {change} than at the first pattern's start",
                     "prime as much before a pattern as was retracted after the last",
                     move.pattern,
                 )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from gcode.marlin import END, TITLE
+from gcode.emit import END, TITLE
 from gcode.printer import Printer
 from gcode.program import XY_DECIMALS
 from gcode.trace import Finding, Trace, homed_axes

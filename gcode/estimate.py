@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gcode.geometry import Curve
+from gcode.grbl import S_DECIMALS
 from gcode.printer import Printer
 from gcode.program import Clean, Comment, Dwell, Extrude, Prime, Program, Retract, Travel
 
@@ -77,6 +78,7 @@ def print_time(program: Program, printer: Printer) -> float:
     """
     total = 0.0
     run: list[_Block] = []
+    flow = 0.0  # S of a pump that is a spindle: GRBL stops the head before it changes that
     x: float | None = None
     y: float | None = None
     z: float | None = None
@@ -84,6 +86,9 @@ def print_time(program: Program, printer: Printer) -> float:
         if isinstance(step, Comment):
             continue
         if isinstance(step, Travel):
+            if flow:  # the pump is turned off, for which GRBL stops
+                total += _run_time(run, printer)
+                run, flow = [], 0.0
             now = (x, y, z)
             x, y, z = (old if new is None else new for old, new in zip(now, (step.x, step.y, step.z), strict=True))
             moved = [0.0 if old is None or new is None else new - old for old, new in zip(now, (x, y, z), strict=True)]
@@ -91,16 +96,25 @@ def print_time(program: Program, printer: Printer) -> float:
                 unit = (moved[0] / length, moved[1] / length, moved[2] / length)
                 run.append(_Block(length, step.speed, unit, unit))
         elif isinstance(step, Extrude):
+            if (
+                printer.spindle
+                and (asked := round(step.volume * step.speed / step.shape.length * printer.spindle.s_per_flow, S_DECIMALS)) != flow
+            ):
+                total += _run_time(run, printer)
+                run, flow = [], asked
             into, out = step.shape.directions
             run.append(_Block(step.shape.length, step.speed, (*into, 0.0), (*out, 0.0)))
             x, y = step.shape.end
         else:
             # A command at standstill ends the run: the head stops before it and starts anew after it.
             total += _run_time(run, printer)
-            run = []
+            run, flow = [], 0.0
             if isinstance(step, (Dwell, Clean)):
                 total += step.seconds
             elif isinstance(step, (Prime, Retract)):
+                if printer.spindle:
+                    total += step.volume / step.rate
+                    continue
                 e = step.volume * printer.pump.e_per_mm3
                 total += _trapezoid(e, step.rate * printer.pump.e_per_mm3, 0.0, 0.0, printer.motion.acceleration)
     return total + _run_time(run, printer)

@@ -12,9 +12,10 @@ from numpy.typing import NDArray
 
 from gcode.check_height import free_length
 from gcode.clearance import distance
+from gcode.emit import on_grid_of
 from gcode.geometry import Curve, Point, Shape, Straight, shape_of
 from gcode.printer import Cleaning, Park, Printer
-from gcode.program import Clean, Comment, Dwell, Extrude, Prime, Program, Retract, Step, Travel, on_grid, quantised
+from gcode.program import Clean, Comment, Dwell, Extrude, Prime, Program, Retract, Step, Travel, on_grid
 from skinfab.errors import InputError, RefusedError
 from skinfab.material import Material
 from skinfab.paths import Path
@@ -96,7 +97,7 @@ def plan(piece: Piece, sensors: Sequence[Sensor], *, printer: Printer, material:
     for name, path in nearest_order(paths, start=(printer.bed.origin[0], printer.bed.origin[1])):
         planner.pattern(name, path)
     planner.end()
-    program = quantised(Program(piece.id, tuple(planner.steps), float(planner.area)), e_per_mm3=printer.pump.e_per_mm3)
+    program = on_grid_of(Program(piece.id, tuple(planner.steps), float(planner.area)), printer)
     return Plan(program, offset, tuple(planner.warnings))
 
 
@@ -139,7 +140,7 @@ class _Planner:
             self.steps.append(Comment("first ink, at the cleaning place"))
             self._go_to(place)
             # In portions, for no command may ask for more E than the firmware accepts.
-            count = math.ceil(place.initial_extrude * self.printer.pump.e_per_mm3 / self.printer.pump.max_e)
+            count = max(math.ceil(place.initial_extrude * self.printer.pump.e_per_mm3 / self.printer.pump.max_e), 1)
             self.steps += [self._prime(place.initial_extrude / count)] * count
             self.steps.append(Clean(place.seconds))
 

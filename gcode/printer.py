@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import math
-import tomllib
 from dataclasses import MISSING, dataclass, fields
-from importlib import resources
 from pathlib import Path
 from types import NoneType
 from typing import Any, get_args, get_type_hints
 
+from gcode.profile import read_profile
 from skinfab.errors import InputError
 
 DEFAULT_PRINTER = "ender5plus-vipro"
@@ -23,6 +22,15 @@ class Bed:
     size: tuple[float, float]
     origin: tuple[float, float]
     height: float
+
+
+@dataclass(frozen=True)
+class Nozzle:
+    """What reaches down into the mould: `outer_radius` of the widest part of the nozzle that comes below the wall's top,
+    `clearance` kept between it and the wall (mm)."""
+
+    outer_radius: float
+    clearance: float
 
 
 @dataclass(frozen=True)
@@ -50,21 +58,28 @@ class Motion:
 
 @dataclass(frozen=True)
 class Pump:
-    """The E axis that drives the ink.
+    """What drives the ink: `flow_min` and `flow_max` mm^3/s, `prime` and `retract` mm^3, `prime_rate` mm^3/s.
 
-    `e_per_mm3` is the factor (mm of E per mm^3), `max_e` the firmware's EXTRUDE_MAXLENGTH (mm of E in one
-    command), `max_e_speed` mm/s of E, `flow_min` and `flow_max` mm^3/s, `prime` and `retract` mm^3,
-    `prime_rate` mm^3/s.
+    Where it is an E axis: `e_per_mm3` is the factor (mm of E per mm^3), `max_e` the firmware's EXTRUDE_MAXLENGTH
+    (mm of E in one command), `max_e_speed` mm/s of E. Where it is a spindle these have no meaning and are left out.
     """
 
-    e_per_mm3: float
-    max_e: float
-    max_e_speed: float
     flow_min: float
     flow_max: float
     prime: float
     retract: float
     prime_rate: float
+    e_per_mm3: float = 1.0
+    max_e: float = math.inf
+    max_e_speed: float = math.inf
+
+
+@dataclass(frozen=True)
+class Spindle:
+    """A pump that GRBL drives as its spindle: `s_per_flow` is S for 1 mm^3/s, `s_max` the greatest S ($30)."""
+
+    s_per_flow: float
+    s_max: float
 
 
 @dataclass(frozen=True)
@@ -105,6 +120,8 @@ class Park:
 class Printer:
     """A whole profile. `arcs`: the firmware draws G2 and G3; `home`: xyz, xy or none; `cleaning` and `park` are optional.
 
+    With a `spindle` the printer speaks GRBL, without one Marlin.
+
     Examples
     --------
     >>> printer = load_printer()
@@ -116,12 +133,14 @@ class Printer:
     arcs: bool
     home: str
     bed: Bed
+    nozzle: Nozzle
     heights: Heights
     motion: Motion
     pump: Pump
     process: Process
     cleaning: Cleaning | None = None
     park: Park | None = None
+    spindle: Spindle | None = None
 
     @property
     def bed_size(self) -> tuple[float, float]:
@@ -135,37 +154,17 @@ def load_printer(name: str | Path = DEFAULT_PRINTER) -> Printer:
     Raises
     ------
     InputError
-        No such profile, not TOML, a field missing, misspelt or of the wrong type, or values that contradict each other.
+        No such profile or parent, not TOML, a field missing, misspelt or of the wrong type, or values that contradict each other.
 
     Examples
     --------
     >>> load_printer("generic-marlin").bed.height
     200.0
     """
-    path = Path(name)
-    bundled = resources.files("gcode") / "profiles"
-    if path.suffix == ".toml":
-        source: Any = path
-    else:
-        source = bundled / f"{name}.toml"
-        if not source.is_file():
-            raise InputError(f"no printer profile named {str(name)!r}; there are {', '.join(bundled_printers())}, or give a .toml file")
-    try:
-        data = tomllib.loads(source.read_text(encoding="utf-8"))
-    except FileNotFoundError:
-        raise InputError(f"no printer profile at {path}") from None
-    except OSError as fault:
-        raise InputError(f"cannot read the printer profile {path}: {fault.strerror or fault}") from fault
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as fault:
-        raise InputError(f"{path} is not a TOML file: {fault}") from fault
+    data = read_profile(name)
     printer: Printer = _build(Printer, data, f"printer profile {name}")
     _check(printer, f"printer profile {name}")
     return printer
-
-
-def bundled_printers() -> tuple[str, ...]:
-    """Names of the bundled profiles."""
-    return tuple(sorted(p.name[:-5] for p in (resources.files("gcode") / "profiles").iterdir() if p.name.endswith(".toml")))
 
 
 def _build(kind: type, data: Any, where: str) -> Any:
@@ -211,6 +210,7 @@ def _check(printer: Printer, where: str) -> None:
         "process, chord_tolerance": printer.process.chord_tolerance,
         **{f"motion, {f.name}": getattr(m, f.name) for f in fields(m)},
         **{f"pump, {k}": getattr(p, k) for k in ("e_per_mm3", "max_e", "max_e_speed", "flow_max", "prime_rate")},
+        **({f"spindle, {f.name}": getattr(printer.spindle, f.name) for f in fields(printer.spindle)} if printer.spindle else {}),
     }
     for key, value in positive.items():
         if not value > 0:
@@ -226,7 +226,27 @@ def _check(printer: Printer, where: str) -> None:
         raise InputError(f"{where}, heights: print_min <= print <= print_max < travel <= bed height must hold, in mm")
     if not p.flow_min <= p.flow_max:
         raise InputError(f"{where}, pump: flow_min {p.flow_min:g} is above flow_max {p.flow_max:g} mm^3/s")
+    if printer.spindle:
+        _check_grbl(printer, printer.spindle, where)
+    elif math.isinf(p.max_e) or math.isinf(p.max_e_speed):
+        missing = "max_e" if math.isinf(p.max_e) else "max_e_speed"
+        raise InputError(f"{where}, pump: field {missing!r} is missing; only a pump that is a [spindle] goes without")
     if p.prime != p.retract:
         raise InputError(
             f"{where}, pump: prime {p.prime:g} and retract {p.retract:g} mm^3 differ; a pattern must end as it began, make them equal"
+        )
+
+
+def _check_grbl(printer: Printer, spindle: Spindle, where: str) -> None:
+    p = printer.pump
+    if printer.home != "none":
+        raise InputError(
+            f"{where}, home is {printer.home!r}; GRBL homes by $H, which is no G-code: home before the start and say 'none' here"
+        )
+    if (p.e_per_mm3, p.max_e, p.max_e_speed) != (1.0, math.inf, math.inf):
+        raise InputError(f"{where}, pump: a pump that is a spindle has no E axis; take out e_per_mm3, max_e and max_e_speed")
+    if (fastest := max(p.flow_max, p.prime_rate)) * spindle.s_per_flow > spindle.s_max:
+        raise InputError(
+            f"{where}: {fastest:g} mm^3/s asks for S{fastest * spindle.s_per_flow:g}, above spindle, s_max {spindle.s_max:g}; "
+            "lower pump, flow_max and prime_rate, or s_per_flow"
         )

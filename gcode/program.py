@@ -165,11 +165,15 @@ def quantised(program: Program, *, e_per_mm3: float) -> Program:
     e_per_mm3 : float
         The printer's E axis, mm per mm^3 of ink.
     """
-    grid = _Grid(e_per_mm3)
+    return snapped(program, InkGrid(e_per_mm3))
+
+
+def snapped(program: Program, grid: InkGrid) -> Program:
+    """The program on another grid of ink than that of an E axis, see `quantised`."""
     return replace(program, name=_plain(program.name), steps=tuple(done for step in program.steps for done in grid.place(step)))
 
 
-class _Grid:
+class InkGrid:
     """Carries the head's rounded place and the ink that is still owed from step to step."""
 
     def __init__(self, e_per_mm3: float) -> None:
@@ -185,12 +189,22 @@ class _Grid:
         if isinstance(step, Extrude):
             return self._extrude(step)
         if isinstance(step, (Prime, Retract)):
-            e = round(step.volume * self.e_per_mm3, E_DECIMALS)
-            rate = speed_on_grid(step.rate * self.e_per_mm3) / self.e_per_mm3
-            return [replace(step, volume=e / self.e_per_mm3, rate=rate)] if e else []
+            return self.standing(step)
         if isinstance(step, (Dwell, Clean)):
             return [replace(step, seconds=round(step.seconds * 1000) / 1000)]
         return [Comment(_plain(step.text))]
+
+    def standing(self, step: Prime | Retract) -> list[Step]:
+        """Ink moved at standstill."""
+        e = round(step.volume * self.e_per_mm3, E_DECIMALS)
+        rate = speed_on_grid(step.rate * self.e_per_mm3) / self.e_per_mm3
+        return [replace(step, volume=e / self.e_per_mm3, rate=rate)] if e else []
+
+    def laid(self, shape: Shape, speed: float) -> float:
+        """Volume laid along a rounded shape, of what is owed, mm^3."""
+        e = max(round(self.owed, E_DECIMALS), 0.0)
+        self.owed -= e
+        return e / self.e_per_mm3
 
     def _extrude(self, step: Extrude) -> list[Step]:
         done: list[Step] = []
@@ -201,10 +215,8 @@ class _Grid:
             shape = self._shape(part)
             if shape is None:
                 continue
-            e = max(round(self.owed, E_DECIMALS), 0.0)
-            self.owed -= e
             self.at = shape.end
-            done.append(Extrude(shape, e / self.e_per_mm3, speed))
+            done.append(Extrude(shape, self.laid(shape, speed), speed))
         return done
 
     def _shape(self, part: Shape) -> Shape | None:

@@ -8,10 +8,11 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TypeAlias
 
 from gcode.geometry import Curve, Point, Shape, Straight
+from gcode.printer import Spindle
 from gcode.words import Command, read_commands
 from skinfab.errors import InputError
 
@@ -94,8 +95,11 @@ class Trace:
     commands: tuple[Command, ...]
 
 
-def trace(text: str) -> Trace:
-    """Follow a text as Marlin would.
+def trace(text: str, *, spindle: Spindle | None = None) -> Trace:
+    """Follow a text as Marlin would, or as GRBL where a spindle is the pump.
+
+    With a `spindle`, E of a move is what the pump gives while it lasts, mm^3; a wait with the pump on is a move
+    without a way.
 
     Raises
     ------
@@ -108,7 +112,7 @@ def trace(text: str) -> Trace:
     >>> t.moves[1].shape.length.__round__(6), t.faults
     (3.141593, ())
     """
-    head = _Head()
+    head = _Head(spindle)
     commands = tuple(read_commands(text))
     for command in commands:
         head.follow(command)
@@ -129,7 +133,10 @@ def homed_axes(command: Command) -> str:
 class _Head:
     """Marlin's modes and the head's place."""
 
-    def __init__(self) -> None:
+    def __init__(self, spindle: Spindle | None) -> None:
+        self.spindle = spindle
+        self.flow = 0.0  # of that spindle, mm^3/s, backward negative
+        self.spindle_s = 0.0  # the last S
         self.moves: list[Move] = []
         self.faults: list[Finding] = []
         self.place: list[float | None] = [None, None, None]  # of the machine, mm
@@ -162,6 +169,10 @@ class _Head:
             self._set_place(command)
         elif code == "G28":
             self._home(command)
+        elif self.spindle and code in ("M3", "M4", "M5", "M2", "M30"):
+            self._turn_pump(command, self.spindle)
+        elif self.spindle and code == "G4" and self.flow:
+            self._pump_at_rest(command)
         elif code in ("G5", "G18", "G19"):
             raise InputError(f"line {command.line}: {code} is not supported; use lines and arcs in the XY plane")
 
@@ -204,10 +215,31 @@ class _Head:
         centre = self._centre(command, end) if command.code in ("G2", "G3") else None
         if centre is not None or e or any(axis in command.words for axis in "XYZ"):
             start = (self.place[0], self.place[1], self.place[2])
-            self.moves.append(
-                Move(command.line, start, (end[0], end[1], end[2]), centre, command.code == "G2", e, self.speed, self.pattern)
-            )
+            move = Move(command.line, start, (end[0], end[1], end[2]), centre, command.code == "G2", e, self.speed, self.pattern)
+            self.moves.append(replace(move, e=self._pumped(move)) if self.spindle else move)
         self.place = end
+
+    def _turn_pump(self, command: Command, spindle: Spindle) -> None:
+        self.spindle_s = self.spindle_s if (s := self._number(command, "S")) is None else s
+        if self.spindle_s < 0 or self.spindle_s > spindle.s_max:
+            self._fault(command, f"S{self.spindle_s:g} is not within 0 and the spindle's {spindle.s_max:g}", "lower the flow, or raise $30")
+        sign = {"M3": 1.0, "M4": -1.0}.get(command.code, 0.0)
+        self.flow = sign * self.spindle_s / spindle.s_per_flow
+
+    def _pump_at_rest(self, command: Command) -> None:
+        seconds = self._number(command, "P") or 0.0
+        place = (self.place[0], self.place[1], self.place[2])
+        self.moves.append(Move(command.line, place, place, None, False, self.flow * seconds, abs(self.flow), self.pattern))
+
+    def _pumped(self, move: Move) -> float:
+        """What the running pump gives during a move, mm^3."""
+        if not self.flow or not move.speed:
+            return 0.0
+        if move.shape is not None:
+            return self.flow * (move.shape.length / move.speed)
+        low, high = move.start[2], move.end[2]
+        # A way of unknown length still lays ink: as much as in one second.
+        return self.flow * (abs(high - low) / move.speed if low is not None and high is not None and not move.is_planar else 1.0)
 
     def _ink(self, command: Command) -> float:
         value = self._number(command, "E")

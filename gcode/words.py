@@ -15,7 +15,7 @@ HEATERS = frozenset({"M104", "M109", "M140", "M141", "M190", "M191"})
 
 #: Commands whose words are read; any other line (messages, fans) is passed over as it stands.
 READ = HEATERS | {"G0", "G1", "G2", "G3", "G4", "G5", "G20", "G21", "G28", "G90", "G91", "G92"}
-READ |= {"M82", "M83", "M206", "M220", "M221", "M302"}
+READ |= {"M3", "M4", "M5", "M82", "M83", "M206", "M220", "M221", "M302"}
 
 #: A line beyond this is not G-code, and a file beyond that is not a skin's.
 LINE_LIMIT, FILE_LIMIT = 4096, 256 * 2**20

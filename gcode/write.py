@@ -6,11 +6,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from gcode.check import check_program
+from gcode.emit import Arcs, emit, on_grid_of, with_chords
 from gcode.estimate import Summary, summarise
-from gcode.marlin import Arcs, emit, with_chords
 from gcode.plan import Plan, plan
 from gcode.printer import Printer, load_printer
-from gcode.program import Program, quantised
+from gcode.program import Program
 from skinfab.errors import InputError, RefusedError, SkinfabError
 from skinfab.files import atomic_write, explain_os_error
 from skinfab.material import load_material
@@ -97,7 +97,7 @@ def checked_text(program: Program, *, printer: Printer, arcs: Arcs = "native") -
     if arcs == "native" and not printer.arcs:
         raise RefusedError(f"{printer.name} draws no arcs (its profile says arcs = false); emit with --arcs lines")
     if arcs == "lines":
-        program = quantised(with_chords(program, tolerance=printer.process.chord_tolerance), e_per_mm3=printer.pump.e_per_mm3)
+        program = on_grid_of(with_chords(program, tolerance=printer.process.chord_tolerance), printer)
     try:
         findings = check_program(program, printer)
     except SkinfabError as fault:

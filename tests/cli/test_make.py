@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 import results
 
-from gcode.marlin import emit
+from gcode.emit import emit
 from gcode.parse import parse
 from gcode.printer import load_printer
 from skinfab.cli.main import main

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from hypothesis import strategies as st
 
+from gcode.emit import emit
 from gcode.geometry import shape_of
-from gcode.marlin import emit
 from gcode.plan import plan
 from gcode.printer import Printer, load_printer
 from gcode.program import Comment, Extrude, Prime, Program, Retract, Travel

@@ -7,8 +7,8 @@ from dataclasses import replace
 import pytest
 
 from gcode.check import check_program, check_text
+from gcode.emit import emit
 from gcode.geometry import Straight
-from gcode.marlin import emit
 from gcode.plan import Plan
 from gcode.printer import Printer
 from gcode.program import Comment, Extrude, Prime, Program, Retract, Travel

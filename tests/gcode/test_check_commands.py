@@ -6,7 +6,7 @@ import pytest
 
 from gcode.check import check_text
 from gcode.check_commands import RULES
-from gcode.marlin import emit
+from gcode.emit import emit
 from gcode.plan import Plan
 from gcode.printer import Printer
 from gcode.words import READ

@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from gcode.check import check_text
-from gcode.marlin import END, emit
+from gcode.emit import END, emit
 from gcode.plan import Plan
 from gcode.printer import Printer
 

@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from gcode.emit import emit, with_chords
 from gcode.estimate import primed, print_time, summarise
 from gcode.geometry import Curve, Straight
-from gcode.marlin import emit, with_chords
 from gcode.plan import Plan
 from gcode.printer import Printer, load_printer
 from gcode.program import Dwell, Extrude, Prime, Program, Retract, Travel

@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from gcode.emit import emit, with_chords
 from gcode.geometry import Straight
-from gcode.marlin import emit, with_chords
 from gcode.plan import Plan
 from gcode.printer import Printer
 from gcode.program import Clean, Comment, Dwell, Extrude, Program, Travel, quantised

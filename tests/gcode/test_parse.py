@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gcode.marlin import emit
+from gcode.emit import emit
 from gcode.parse import parse
 from gcode.plan import Plan
 from gcode.printer import Printer, load_printer

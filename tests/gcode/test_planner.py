@@ -10,8 +10,8 @@ from typing import Any
 
 import pytest
 
+from gcode.emit import emit
 from gcode.estimate import print_time
-from gcode.marlin import emit
 from gcode.plan import plan
 from gcode.printer import Printer, load_printer
 from gcode.program import Clean, Dwell, Extrude, Prime, Program, Retract, Travel

@@ -4,7 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from gcode.printer import bundled_printers, load_printer
+from gcode.printer import load_printer
+from gcode.profile import bundled_printers
 from skinfab.errors import InputError
 
 SOURCE = (Path(__file__).parents[2] / "gcode/profiles/ender5plus-vipro.toml").read_text(encoding="utf-8")
@@ -77,7 +78,7 @@ def test_a_table_that_is_none(tmp_path: Path) -> None:
 
 
 def test_unknown_names_list_the_known(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="there are ender5plus-vipro, generic-marlin"):
+    with pytest.raises(InputError, match="there are ender5plus-vipro, generic-grbl, generic-marlin"):
         load_printer("ender3")
     with pytest.raises(InputError, match="no printer profile at"):
         load_printer(tmp_path / "absent.toml")

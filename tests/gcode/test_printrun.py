@@ -13,7 +13,7 @@ import pytest
 sys.path.insert(0, str(Path(__file__).parent))
 from marlin_server import MarlinServer
 
-from gcode.marlin import emit
+from gcode.emit import emit
 from gcode.plan import Plan
 from gcode.printer import Printer
 from gcode.program import Extrude, Prime

@@ -11,10 +11,10 @@ from pathlib import Path
 import pytest
 
 from gcode.check import check_text
+from gcode.emit import emit
 from gcode.geometry import Box, Curve, Shape, Straight
-from gcode.marlin import emit
 from gcode.plan import Plan, plan
-from gcode.printer import Printer
+from gcode.printer import Printer, load_printer
 from gcode.program import Extrude, Travel
 from skinfab.material import Material
 from skinfab.patterns.contact_spiral import ContactSpiral
@@ -53,7 +53,8 @@ class Drawn:
 
 
 def interpret(text: str, folder: Path) -> Drawn:
-    (folder / "a.ngc").write_text(stripped(text))
+    # A file for GRBL is RS-274 as it stands.
+    (folder / "a.ngc").write_text(text if "M83" not in text else stripped(text))
     libraries = [HOME / "usr/lib", *(HOME / "usr/lib").glob("*-linux-gnu")]
     environment = os.environ | {"LD_LIBRARY_PATH": ":".join(map(str, libraries)), "PYTHONHOME": str(HOME / "usr")}
     command = [str(HOME / "usr/bin/rs274"), "-g", "-t", "/dev/null", "-v", "a.var", "a.ngc"]
@@ -124,3 +125,19 @@ def test_the_peers_spiral_is_refused_by_both(peers_spiral: str, printer: Printer
     lead = 6.0 + radius - math.sqrt(radius**2 - b**2 / 4)
     mended = peers_spiral.replace("X106.0000", f"X{100 + lead:.4f}").replace("I11.0000", f"I{17 - lead:.4f}")
     assert interpret(mended, tmp_path).complaint == "" and check_text(mended, printer) == ()
+
+
+def test_a_file_for_grbl_runs_as_it_stands(make_piece: Callable, material: Material, tmp_path: Path) -> None:
+    grbl = load_printer("generic-grbl")
+    planned = plan(
+        make_piece(120, 120),
+        [Sensor("C1", "P1", ContactSpiral(n=3, x=2.0, b=3.0, l=6.0, s=22.0), 40, 60, 1.1, 0)],
+        printer=grbl,
+        material=material,
+    )
+    drawn = interpret(emit(planned.program, grbl), tmp_path)
+    meant = [s.shape for s in planned.program.steps if isinstance(s, Extrude)]
+    arcs = [s for s in drawn.shapes if isinstance(s, Curve)]
+    assert drawn.complaint == "" and len(arcs) == sum(isinstance(s, Curve) for s in meant)
+    assert sum(a.length for a in arcs) == pytest.approx(sum(s.length for s in meant if isinstance(s, Curve)), abs=1e-3)
+    assert interpret(emit(planned.program, grbl).replace(" J", " J1", 1), tmp_path).complaint != ""

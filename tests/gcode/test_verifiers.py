@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from gcodeparser import parse_gcode_lines
 
-from gcode.marlin import emit
+from gcode.emit import emit
 from gcode.plan import Plan
 from gcode.printer import Printer
 from gcode.program import Extrude, Prime

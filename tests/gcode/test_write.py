@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from gcode.marlin import emit
+from gcode.emit import emit
 from gcode.plan import Plan
 from gcode.printer import Printer
 from gcode.program import Extrude

@@ -6,8 +6,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from random_patterns import patterns
 
+from gcode.emit import emit
 from gcode.geometry import Curve
-from gcode.marlin import emit
 from gcode.parse import parse
 from gcode.plan import plan
 from gcode.printer import load_printer

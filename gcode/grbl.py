@@ -1,0 +1,117 @@
+"""The dialect of GRBL 1.1, which knows three axes and no E: the pump is its spindle.
+
+M3 runs the pump forward, M4 backward (the wire that turns a spindle the other way), M5 stops it; S is its rate,
+so many units for each mm^3/s. The ink of a move is therefore its rate times the time the move takes, and a step says
+its volume in whole hundredths of S. What follows from GRBL:
+
+* G0 takes no speed, so every move is G1; one with the pump at rest is a travel.
+* A change of S waits until the head has stopped, and the pump runs on while the head speeds up and slows down: a bead
+  is a little thicker within v / a of a stop (0.01 s at 5 mm/s and 500 mm/s^2). Ink of one rate is best.
+* Homing is ``$H``, which is no G-code and homes Z too: it is done before, by hand.
+* Spindle mode, not laser mode ($32=0): in laser mode M4 would be forward, by the speed of the head.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from gcode.geometry import Curve, Shape
+from gcode.printer import Spindle
+from gcode.program import F_DECIMALS, XY_DECIMALS, Clean, Dwell, Extrude, InkGrid, Prime, Program, Retract, Step, Travel
+
+#: Decimals of S; GRBL reads a float, most boards drive 255 levels.
+S_DECIMALS = 2
+
+REASONS = (
+    "; GRBL: $32=0 (spindle mode) and $30 as the profile's s_max; the spindle's output drives the pump, M4 turns it back.",
+    "; home with $H before the mould lies on the bed; then set X, Y as in the report and Z = 0 at the floor of the cavity",
+    "; with G10 L20 P1. Z is left alone here: nothing probes the wet mould.",
+)
+
+PREAMBLE = (
+    "G21 ; millimetres",
+    "G90 ; absolute places",
+    "G17 ; arcs in XY",
+    "G94 ; speeds in mm/min",
+    "M5 ; pump at rest",
+)
+
+ENDING = ("M2",)
+
+
+class SpindleGrid(InkGrid):
+    """Ink as S times time: S in hundredths, time at standstill in ms."""
+
+    def __init__(self, spindle: Spindle) -> None:
+        super().__init__(1.0)
+        self.s_per_flow = spindle.s_per_flow
+
+    def standing(self, step: Prime | Retract) -> list[Step]:
+        """Ink moved at standstill."""
+        rate = max(round(step.rate * self.s_per_flow, S_DECIMALS), 10**-S_DECIMALS) / self.s_per_flow
+        seconds = round(step.volume / rate * 1000) / 1000
+        return [replace(step, volume=rate * seconds, rate=rate)] if seconds else []
+
+    def laid(self, shape: Shape, speed: float) -> float:
+        """Volume laid along a rounded shape, mm^3; nothing is carried on, for S should stay the same along a pattern."""
+        owed, self.owed = self.owed, 0.0
+        # Never S0, which would read as a travel.
+        s = max(round(owed * speed / shape.length * self.s_per_flow, S_DECIMALS), 10**-S_DECIMALS)
+        flow = s / self.s_per_flow
+        return volume_along(shape, flow, speed)
+
+
+def volume_along(shape: Shape, flow: float, speed: float) -> float:
+    """What a steady `flow`, mm^3/s, lays along a shape, mm^3."""
+    return flow * (shape.length / speed)
+
+
+class GrblWriter:
+    """Writes steps; F and S are sticky, so each is written only where it changes."""
+
+    def __init__(self, spindle: Spindle) -> None:
+        self.s_per_flow = spindle.s_per_flow
+        self.feed = ""
+        self.pump = "M5"
+
+    def lines(self, program: Program) -> list[str]:
+        """The lines of all steps, the pump at rest at the end."""
+        return [*(line for step in program.steps for line in self._lines(step)), *self._turn("M5")]
+
+    def _lines(self, step: Step) -> list[str]:
+        if isinstance(step, Travel):
+            words = [f"{axis}{v:.{XY_DECIMALS}f}" for axis, v in zip("XYZ", (step.x, step.y, step.z), strict=True) if v is not None]
+            return [*self._turn("M5"), " ".join(["G1", *words, *self._feed(step.speed)])]
+        if isinstance(step, Extrude):
+            return [*self._turn(f"M3 {self._rate(step.volume * step.speed / step.shape.length)}"), self._drawn(step)]
+        if isinstance(step, (Prime, Retract)):
+            code = "M3" if isinstance(step, Prime) else "M4"
+            dwell = f"G4 P{step.volume / step.rate:.3f}"
+            self.pump = "M5"
+            return [f"{code} {self._rate(step.rate)}", dwell, "M5"]
+        if isinstance(step, (Dwell, Clean)):
+            note = " ; clean" if isinstance(step, Clean) else ""
+            return [*self._turn("M5"), f"G4 P{step.seconds:.3f}{note}"]
+        return [f"; {step.text}"]
+
+    def _drawn(self, step: Extrude) -> str:
+        shape = step.shape
+        code, words = "G1", [f"X{shape.end[0]:.{XY_DECIMALS}f}", f"Y{shape.end[1]:.{XY_DECIMALS}f}"]
+        if isinstance(shape, Curve):
+            code = "G2" if shape.clockwise else "G3"
+            words += [f"{axis}{shape.centre[k] - shape.start[k]:.{XY_DECIMALS}f}" for k, axis in enumerate("IJ")]
+        return " ".join([code, *words, *self._feed(step.speed)])
+
+    def _rate(self, flow: float) -> str:
+        return f"S{flow * self.s_per_flow:.{S_DECIMALS}f}"
+
+    def _turn(self, pump: str) -> list[str]:
+        changed = pump != self.pump
+        self.pump = pump
+        return [pump] if changed else []
+
+    def _feed(self, speed: float) -> list[str]:
+        feed = f"F{speed * 60:.{F_DECIMALS}f}"
+        changed = feed != self.feed
+        self.feed = feed
+        return [feed] if changed else []
