@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -188,13 +189,16 @@ class Surface:
 def surface(args: argparse.Namespace, mesh: Mesh, *, usual: float = 0.0) -> Surface:
     """The surface that ``--thickness`` asks for; without it, for the usual thickness (mm), and places where that folds are rounded off."""
     from skinfab.errors import InputError
-    from skinfab.mesh.offset import offset_mesh
+    from skinfab.mesh.offset import OffsetError, offset_mesh
 
     thickness = usual if args.thickness is None else args.thickness
     try:
         offset = offset_mesh(mesh, thickness * args.neutral, round_off=args.thickness is None)
-    except InputError as fault:
-        raise InputError(f"--thickness {thickness:g}: {fault}; skinfab make without --thickness rounds such places off") from fault
+    except OffsetError as fault:
+        # Rounded down to whole hundredths: what is said will do.
+        most = math.floor(100 * fault.largest / args.neutral) / 100
+        less = f", give --thickness {most:g} or less" if most > 0 else ""
+        raise InputError(f"--thickness {thickness:g}: {fault}{less}, or leave it to skinfab make, which rounds it off by itself") from fault
     remarks = offset.remarks
     if usual and thickness and thickness != usual:
         remarks += (f"flattened for a skin {thickness:g} mm thick, but the material profile pours {usual:g} mm; change one of them",)

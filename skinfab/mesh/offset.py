@@ -25,8 +25,24 @@ _DRAW_IN = 0.7
 _DRAW_ROUNDS = 20
 #: The distance to the object is looked up at this many vertices, evenly chosen: a place without room has more than one.
 _LOOKED_AT = 20_000
+#: Cosine of the way out and the normal of a face on the other side: not of a corner's own faces, which stand at right angles.
+_OPPOSITE = -0.5
 #: Halvings in the search for the largest offset that does not fold.
 _HALVINGS = 12
+
+
+class OffsetError(InputError):
+    """An offset surface that folds or passes through itself.
+
+    Attributes
+    ----------
+    largest : float, mm
+        The largest offset that does not fold; 0 where that would not help.
+    """
+
+    def __init__(self, sentence: str, *, largest: float = 0.0) -> None:
+        super().__init__(sentence)
+        self.largest = largest
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,9 +80,11 @@ def offset_mesh(mesh: Mesh, distance: float, *, round_off: bool = False) -> Offs
 
     Raises
     ------
+    OffsetError
+        The surface folds or passes through itself and `round_off` is not set; names the place, and knows the largest offset
+        that does not fold.
     InputError
-        The surface folds or passes through itself and `round_off` is not set; names the place and the largest offset that
-        does not fold. Or `distance` is negative or not finite.
+        `distance` is negative or not finite.
 
     Examples
     --------
@@ -89,10 +107,10 @@ def offset_mesh(mesh: Mesh, distance: float, *, round_off: bool = False) -> Offs
         even = _without_folds(mesh, step, distance)
         V = mesh.V + distance * even
     else:
-        most = _largest(mesh, step, distance)
-        raise InputError(
-            f"the surface {distance:.3g} mm outside the object folds over at {_count(folded)}, {_place(mesh, folded)}; "
-            f"up to {most:.2g} mm it does not, or open that place on the object"
+        raise OffsetError(
+            f"the surface {distance:.3g} mm outside the object folds over at {_count(folded)}, {_place(mesh, folded)}: something there "
+            "is more tightly hollow; open it on the object",
+            largest=_largest(mesh, step, distance),
         )
     remarks = [_rounded_off(mesh, folded, step, even, distance)] if folded.any() else []
     # Where it was rounded off it is nearer for that reason, which is said already.
@@ -101,9 +119,9 @@ def offset_mesh(mesh: Mesh, distance: float, *, round_off: bool = False) -> Offs
         where = _near(mesh.V[np.argmax(meeting)])
         share = _share_of_area(mesh, meeting)
         if not round_off:
-            raise InputError(
+            raise OffsetError(
                 f"the surface {distance:.3g} mm outside the object passes through itself {where}, where two sides face each other; "
-                "widen the gap there, or take a smaller offset"
+                "widen the gap there"
             )
         remarks.append(f"two sides of the object face each other so closely {where} that their skins press on each other ({share})")
     return Offset(Mesh(V, mesh.F, mesh.name), tuple(remarks))
@@ -203,16 +221,19 @@ def _largest(mesh: Mesh, step: FloatArray, distance: float) -> float:
 
 
 def _meets_itself(mesh: Mesh, V: FloatArray, distance: float) -> BoolArray:
-    """Vertices of the offset surface that are nearer to the object than it should be anywhere, (n,)."""
+    """Vertices of the offset surface that are nearer to an opposite side of the object than it should be anywhere, (n,)."""
     import igl
 
     used = mesh.topology.used_vertices
     looked = used[:: -(-len(used) // _LOOKED_AT)]
     tree = igl.AABB()
     tree.init(mesh.V, mesh.F)
-    squared, _, _ = tree.squared_distance(mesh.V, mesh.F, V[looked])
+    squared, face, _ = tree.squared_distance(mesh.V, mesh.F, V[looked])
+    outward = V[looked] - mesh.V[looked]
+    towards = np.einsum("ij,ij->i", outward, mesh.face_normals[face])
+    opposite = towards < _OPPOSITE * np.linalg.norm(outward, axis=1)
     near = np.zeros(len(mesh.V), dtype=bool)
-    near[looked] = squared < (OFFSET_NEAR * distance) ** 2
+    near[looked] = opposite & (squared < (OFFSET_NEAR * distance) ** 2)
     return near
 
 
@@ -244,4 +265,6 @@ def _count(folded: BoolArray) -> str:
 def _share_of_area(mesh: Mesh, vertices: BoolArray) -> str:
     """Part of the surface about these vertices, in words."""
     share = 100 * float(mesh.face_areas @ vertices[mesh.F].mean(axis=1)) / mesh.area
-    return f"{share:.2g} % of the surface" if share >= 0.01 else "less than 0.01 % of the surface"
+    if share < 0.01:
+        return "less than 0.01 % of the surface"
+    return f"{share:.0f} % of the surface" if share >= 10 else f"{share:.2g} % of the surface"
