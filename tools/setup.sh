@@ -63,6 +63,20 @@ if said=$($venv/bin/python -W ignore -c "$probe" 2>&1) && [ -z "$said" ]; then :
     $venv/bin/python -W ignore -c "$probe" || fail "a library cannot be loaded; the lines above say which"
 fi
 
+# Compiled once, here, instead of in the user's first command.
+say "compiling what is computed most"
+$venv/bin/python -W ignore - <<'WARM' || say "left for the first use"
+import numpy as np
+from skinfab.bench.disks import bumpy_cap
+from skinfab.flatten import bijective
+from skinfab.flatten.disk import flatten_isometric
+flatten_isometric(*bumpy_cap(5400))
+turn, r = np.meshgrid(np.linspace(0, 4 * np.pi, 81), np.linspace(1, 2, 5))
+V = np.stack([r.ravel() * np.cos(turn.ravel()), r.ravel() * np.sin(turn.ravel()), 0.3 * turn.ravel()], axis=1)
+k = (81 * np.arange(4)[:, None] + np.arange(80)).ravel()
+bijective.flatten_bijective(V, np.concatenate([np.stack([k, k + 1, k + 82], axis=1), np.stack([k, k + 82, k + 81], axis=1)]))
+WARM
+
 # Only the GUI and its tests need a Tk and, where there is no screen, a virtual one: without them the rest still works.
 gui=()
 $venv/bin/python -c 'import tkinter' 2>/dev/null || gui+=(python3-tk)

@@ -64,7 +64,6 @@ def contestants() -> list[Contestant]:
     ours = [Contestant(name, "ours", _ours(method(name))) for name in METHODS]
     return [
         *ours,
-        Contestant("bijective", "ours", _ours(_bijective)),
         Contestant("igl.lscm", "peer", _igl_lscm, "igl"),
         *(Contestant(f"igl.slim {n}", "peer", _igl_slim(n), "igl") for n in SLIM_ITERATIONS),
         Contestant("pymeshlab harmonic", "peer", _pymeshlab("compute_texcoord_parametrization_harmonic"), "pymeshlab"),
@@ -75,12 +74,6 @@ def contestants() -> list[Contestant]:
 
 def _ours(flatten: Callable[[FloatArray, IntArray], FloatArray]) -> Callable[[FloatArray, IntArray], Work]:
     return lambda V, F: lambda: Flat(F, flatten(V, F), np.arange(len(V)))
-
-
-def _bijective(V: FloatArray, F: IntArray) -> FloatArray:
-    from skinfab.flatten.bijective import flatten_bijective
-
-    return flatten_bijective(V, F)
 
 
 def _igl_lscm(V: FloatArray, F: IntArray) -> Work:
