@@ -12,6 +12,7 @@ from gcode.check_commands import command_findings
 from gcode.check_file import file_findings
 from gcode.check_grbl import grbl_findings
 from gcode.check_height import height_findings
+from gcode.check_wall import Wall, wall_findings
 from gcode.emit import emit
 from gcode.geometry import Curve, Straight
 from gcode.printer import Printer
@@ -23,16 +24,18 @@ from skinfab.tolerances import ARC_RADIUS_MM
 HALF_XY, HALF_E, HALF_F = 0.5 * 10**-XY_DECIMALS, 0.5 * 10**-E_DECIMALS, 0.5 * 10**-F_DECIMALS / 60
 
 
-def check_program(program: Program, printer: Printer) -> tuple[Finding, ...]:
+def check_program(program: Program, printer: Printer, *, wall: Wall | None = None) -> tuple[Finding, ...]:
     """Findings about a program, as the text it would become; line numbers are that text's.
 
     Beyond `check_text`, prime and retract must cancel exactly within each pattern.
     """
-    return (*_unbalanced(program), *check_text(emit(program, printer), printer))
+    return (*_unbalanced(program), *check_text(emit(program, printer), printer, wall=wall))
 
 
-def check_text(text: str, printer: Printer) -> tuple[Finding, ...]:
+def check_text(text: str, printer: Printer, *, wall: Wall | None = None) -> tuple[Finding, ...]:
     """Findings about a G-code text, in the order of its lines; empty where these rules find no fault.
+
+    Where the mould's `wall` is known, the nozzle must keep off it.
 
     Raises
     ------
@@ -55,6 +58,7 @@ def check_text(text: str, printer: Printer) -> tuple[Finding, ...]:
         *judged.faults,
         *(grbl_findings(judged) if printer.spindle else command_findings(judged, printer)),
         *height_findings(judged, printer),
+        *(wall_findings(judged, wall, printer.nozzle) if wall else ()),
         *_retracts(judged, "mm^3 of ink" if printer.spindle else "mm of E"),
     ]
     for move in judged.moves:

@@ -7,11 +7,8 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
 from gcode.check_height import free_length
-from gcode.clearance import distance
+from gcode.check_wall import Wall, needed_room, wall_of
 from gcode.emit import on_grid_of
 from gcode.geometry import Curve, Point, Shape, Straight, shape_of
 from gcode.printer import Cleaning, Park, Printer
@@ -91,8 +88,7 @@ def plan(piece: Piece, sensors: Sequence[Sensor], *, printer: Printer, material:
             raise InputError(f"sensor {sensor.id} lies on piece {sensor.piece}, not on {piece.id}")
     offset = bed_offset(piece, printer)
     paths = {s.id: s.printed_path.transformed(angle=0.0, shift=offset) for s in sensors}
-    edges = piece.UV[piece.topology.E[piece.topology.is_boundary]] + offset  # outline, holes, darts
-    planner = _Planner(printer, material, edges)
+    planner = _Planner(printer, material, wall_of(piece, material, offset))
     planner.begin()
     for name, path in nearest_order(paths, start=(printer.bed.origin[0], printer.bed.origin[1])):
         planner.pattern(name, path)
@@ -126,10 +122,10 @@ def nearest_order(paths: dict[str, Path], *, start: Point) -> list[tuple[str, Pa
 class _Planner:
     """Appends the steps of pattern after pattern and remembers the ink that is laid."""
 
-    def __init__(self, printer: Printer, material: Material, edges: NDArray[np.float64]) -> None:
+    def __init__(self, printer: Printer, material: Material, wall: Wall) -> None:
         self.printer, self.material = printer, material
         self.area = material.ink.bead_area_mm2
-        self.edges = edges
+        self.wall = wall
         self.laid: list[Shape] = []
         self.steps: list[Step] = []
         self.warnings: list[str] = []
@@ -195,18 +191,19 @@ class _Planner:
         return Prime(volume, self._pump_rate())
 
     def _run(self, name: str, kind: str, at: Point, direction: Point, wanted: float, *, leaves: bool) -> Point:
-        """Where a run along the tangent ends: short of the skin's edge and of wet ink."""
+        """Where a run along the tangent ends: short of wet ink, and of the mould's wall by all of the nozzle."""
         if not wanted:
             return at
         radius = math.sqrt(self.area / math.pi)
+        need = max(radius, needed_room(self.wall, self.printer.nozzle, self.printer.heights.print))
         length = free_length(at, direction, wanted, self.laid, radius, leaves=leaves)
         for tenths in range(round(10 * length / wanted), -1, -1):
             length = wanted * tenths / 10
             end = (at[0] + direction[0] * length, at[1] + direction[1] * length)
-            if not length or distance((at, end), self.edges) >= radius:
+            if not length or self.wall.room([Straight(at, end).segment]) >= need:
                 break
         if length < wanted * (1 - 1e-9):
-            self.warnings.append(f"{name}: {kind} cut from {wanted:g} to {length:.2g} mm, for the skin's edge or wet ink is near")
+            self.warnings.append(f"{name}: {kind} cut from {wanted:g} to {length:.2g} mm, for the mould's wall or wet ink is near")
         return end if length else at
 
     def _extrude(self, name: str, shapes: Sequence[Shape]) -> None:

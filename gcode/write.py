@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from gcode.check import check_program
+from gcode.check_wall import Wall, wall_of
 from gcode.emit import Arcs, emit, on_grid_of, with_chords
 from gcode.estimate import Summary, summarise
 from gcode.plan import Plan, plan
@@ -69,10 +70,12 @@ def write_skin(skin: Skin, folder: str | Path, *, arcs: Arcs | None = None, prin
     arcs = arcs or ("native" if printer.arcs else "lines")
     material = load_material(skin.material)
     validate(skin, material)
-    plans = [plan(p, skin.sensors_on(p.id), printer=printer, material=material) for p in skin.pieces if skin.sensors_on(p.id)]
+    pieces = [p for p in skin.pieces if skin.sensors_on(p.id)]
+    plans = [plan(p, skin.sensors_on(p.id), printer=printer, material=material) for p in pieces]
     if not plans:
         raise InputError("this skin has no sensor, so there is nothing to print; place one first")
-    texts = [checked_text(planned.program, printer=printer, arcs=arcs) for planned in plans]
+    walls = [wall_of(piece, material, planned.offset) for piece, planned in zip(pieces, plans, strict=True)]
+    texts = [checked_text(planned.program, printer=printer, arcs=arcs, wall=wall) for planned, wall in zip(plans, walls, strict=True)]
     folder = Path(folder)
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -86,8 +89,8 @@ def write_skin(skin: Skin, folder: str | Path, *, arcs: Arcs | None = None, prin
     return tuple(written)
 
 
-def checked_text(program: Program, *, printer: Printer, arcs: Arcs = "native") -> tuple[str, Summary]:
-    """The text of a program that passes its check, and its summary.
+def checked_text(program: Program, *, printer: Printer, arcs: Arcs = "native", wall: Wall | None = None) -> tuple[str, Summary]:
+    """The text of a program that passes its check, the mould's `wall` too where it is given, and its summary.
 
     Raises
     ------
@@ -99,7 +102,7 @@ def checked_text(program: Program, *, printer: Printer, arcs: Arcs = "native") -
     if arcs == "lines":
         program = on_grid_of(with_chords(program, tolerance=printer.process.chord_tolerance), printer)
     try:
-        findings = check_program(program, printer)
+        findings = check_program(program, printer, wall=wall)
     except SkinfabError as fault:
         raise RefusedError(f"the G-code of piece {program.name} was not written: {fault}") from fault
     if findings:

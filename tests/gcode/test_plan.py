@@ -87,13 +87,13 @@ def test_entry_and_exit_run_along_the_tangent(make_piece: Callable, make_sensor:
     assert planned.warnings == ()
 
 
-def test_overruns_stop_at_the_skins_edge_and_say_so(
+def test_overruns_stop_where_the_nozzle_would_meet_the_wall_and_say_so(
     make_piece: Callable, make_sensor: Callable, printer: Printer, material: Material
 ) -> None:
-    planned = plan(make_piece(100, 20), [make_sensor("C1", Path((Line((0, 0), (98.7, 0)),)), 0.9, 10)], printer=printer, material=material)
+    planned = plan(make_piece(100, 20), [make_sensor("C1", Path((Line((0, 0), (97.3, 0)),)), 1.4, 10)], printer=printer, material=material)
     assert planned.warnings == (
-        "C1: start overrun cut from 1 to 0.5 mm, for the skin's edge or wet ink is near",
-        "C1: end overrun cut from 1 to 0 mm, for the skin's edge or wet ink is near",
+        "C1: start overrun cut from 1 to 0.5 mm, for the mould's wall or wet ink is near",
+        "C1: end overrun cut from 1 to 0.4 mm, for the mould's wall or wet ink is near",
     )
     assert check_program(planned.program, printer) == ()
 
