@@ -126,6 +126,13 @@ RIGID_WEIGHT = 1e-3
 #: Prescribed turning angles may miss 2 pi by this much: written with six decimals, they do.
 TURNING_SUM_RAD = 1e-5
 
+#: Prescribed boundary edges may come out longer or shorter by this fraction to close the curve: most do by under a hundredth,
+#: and where one is off by more the map is no longer what was asked for.
+CLOSED_LENGTH = 0.25
+
+#: A triangle of a layout under this fraction of its size has shrunk to nothing: rounding is a hundredth of its sides.
+SHRUNK = 1e-14
+
 #: Target shapes are reached when no boundary vertex moves by more than this fraction of the shape's size.
 TARGET_MOVE = 1e-10
 

@@ -8,15 +8,18 @@ the disk need, has a factor of its own. Numbers in comments are the paper's sect
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from skinfab.errors import InputError
+from skinfab.flatten.bff_checks import require_closed, require_lengths, require_upright
 from skinfab.flatten.bff_curve import close_curve, scaled_lengths, vertex_scale
-from skinfab.flatten.bff_target import fit_circle, fit_curve, require_upright
+from skinfab.flatten.bff_target import fit_circle, fit_curve
 from skinfab.flatten.distortion import best_scale
+from skinfab.flatten.ears import Halved, halve_chords
 from skinfab.flatten.laplacian import Intrinsic, intrinsic
 from skinfab.flatten.steklov import NeumannToDirichlet
 from skinfab.linalg import Cholesky
@@ -24,6 +27,34 @@ from skinfab.mesh.topology import Topology
 from skinfab.tolerances import TURNING_SUM_RAD
 
 FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Shaped:
+    """A disk laid in a target shape.
+
+    On a straight side a triangle whose corners all lie on the border (an ear, say) has no room, and on a round one hardly
+    any. So chords, the inner edges from border to border, are halved first (`ears.halve_chords`): the surface is the same,
+    its triangles are a few more.
+
+    Parameters
+    ----------
+    V : (n + k, 3) float64, mm
+        The given vertices, then the middles of the chords.
+    F : (l, 3) int64
+        The given triangles, those at chords in parts.
+    UV : (n + k, 2) float64
+    chords : (k, 2) int64
+        Ends of the edges that were halved; none where every triangle has an inner vertex.
+    """
+
+    V: FloatArray
+    F: NDArray[np.int64]
+    UV: FloatArray
+    chords: NDArray[np.int64]
+
+    def __repr__(self) -> str:
+        return f"Shaped({len(self.F)} triangles, {len(self.chords)} chords halved)"
 
 
 class BffSolver:
@@ -62,7 +93,7 @@ class BffSolver:
     >>> uv = solver.free()
     >>> float(np.linalg.norm(uv[2] - uv[0]).round(9)), solver.factorisations, solver.solves
     (1.414213562, 1, 2)
-    >>> np.linalg.norm(solver.disk(), axis=1).round(9).tolist()
+    >>> np.linalg.norm(solver.disk().UV, axis=1).round(9).tolist()
     [1.0, 1.0, 1.0, 1.0, 0.0]
     """
 
@@ -71,7 +102,7 @@ class BffSolver:
         self.boundary = loop = require_disk(topology, len(V))
         require_finite(V)
         corners = _delaunay(V, F, topology) if robust else intrinsic(V, F)
-        self._V, self._F = V, F
+        self._V, self._F, self._topology, self._robust = V, F, topology, robust
         self.lengths_mm = np.linalg.norm(V[np.roll(loop, -1)] - V[loop], axis=1)
         inner = np.ones(len(V), dtype=bool)
         inner[loop] = False
@@ -85,7 +116,8 @@ class BffSolver:
     def factorisations(self) -> int:
         """How many sparse factorisations were done.
 
-        1, or 0 without inner vertices; one more from the first `disk`, `angles`, `curve` or `scale_of` on.
+        1, or 0 without inner vertices; one more from the first `disk`, `angles`, `curve` or `scale_of` on. Where there are
+        chords to halve, `disk` and `curve` have two of their own.
         """
         return sum(factor.factorisations for factor in self._factors)
 
@@ -96,7 +128,9 @@ class BffSolver:
 
     @property
     def _factors(self) -> list[Cholesky | NeumannToDirichlet]:
-        return [factor for factor in (self._cholesky, self.__dict__.get("_to_dirichlet")) if factor is not None]
+        own = [factor for factor in (self._cholesky, self.__dict__.get("_to_dirichlet")) if factor is not None]
+        room = self.__dict__.get("_roomy", self)
+        return own if room is self else own + room._factors
 
     def free(self) -> FloatArray:
         """Scale factor 1 along the boundary: of all conformal flattenings the one with the least area distortion (4.2); (n, 2) mm."""
@@ -113,14 +147,16 @@ class BffSolver:
         Raises
         ------
         InputError
-            Not one length for each boundary edge, or one that is not positive; the object's own such edge included.
+            Not one length for each boundary edge, one that is not positive (the object's own such edge included), or one
+            longer than all the others together.
+        RefusedError
+            The curve closes only with an edge more than a quarter off its length, or a triangle would be turned over.
         """
         target = self._checked(target_lengths, "lengths")
         for length, whose in ((target, "the target lengths"), (self.lengths_mm, "the mesh")):
-            if not (length > 0).all():
-                k = int(np.flatnonzero(~(length > 0))[0])
-                raise InputError(f"boundary edge {k} has length {length[k]:g} mm in {whose}; every length must be positive")
-        return self._extended(close_curve(target, self._turning(vertex_scale(self.lengths_mm, target))))
+            require_lengths(length, whose)
+        turning = self._turning(vertex_scale(self.lengths_mm, target))
+        return self._asked(close_curve(target, turning), turning, "with these lengths", length=target)
 
     def angles(self, turning: FloatArray) -> FloatArray:
         """Turning angles (b,) rad at the boundary vertices, 2 pi together: 0 straight on, pi / 2 a square's corner; (n, 2) mm.
@@ -131,14 +167,16 @@ class BffSolver:
         ------
         InputError
             Not one angle for each boundary vertex, or their sum is not 2 pi.
+        RefusedError
+            The curve closes only with edges that run backwards, or a triangle would be turned over.
         """
         wanted = self._checked(turning, "turning angles")
         if not abs(wanted.sum() - 2 * np.pi) <= TURNING_SUM_RAD:
             raise InputError(f"the turning angles sum to {wanted.sum():.9g} rad; a closed curve turns by 2 pi, so scale or shift them")
         u = self.scale_of(wanted)
-        return self._extended(close_curve(scaled_lengths(self.lengths_mm, u), wanted))
+        return self._asked(close_curve(scaled_lengths(self.lengths_mm, u), wanted), wanted, "with these turning angles")
 
-    def curve(self, target_points: FloatArray) -> FloatArray:
+    def curve(self, target_points: FloatArray) -> Shaped:
         """The boundary laid on a closed curve (6.3): `boundary[0]` on its first point, the others where the map is most nearly conformal.
 
         Parameters
@@ -148,7 +186,7 @@ class BffSolver:
 
         Returns
         -------
-        (n, 2) float64, mm
+        Shaped
             At the target's own size and place, the boundary on it, every triangle the right way up. Smooth borders and
             targets settle to rounding; where one has corners the boundary is the one of the least conformal energy.
 
@@ -157,8 +195,7 @@ class BffSolver:
         InputError
             Fewer than three points, one that is not finite, or a curve that does not run counter-clockwise.
         RefusedError
-            A triangle would be turned over (at a corner that turns inwards, most often), or be flattened to a line
-            because all its vertices are on the boundary and fall on one straight side (`ears.cut_ears` takes such off).
+            A triangle would be turned over (at a corner that turns inwards, most often), or shrink to nothing.
         """
         target = np.asarray(target_points, dtype=np.float64)
         if target.ndim != 2 or target.shape[1] != 2 or len(target) < 3 or not np.isfinite(target).all():
@@ -166,13 +203,14 @@ class BffSolver:
         area = (target[:, 0] * np.roll(target[:, 1], -1) - np.roll(target[:, 0], -1) * target[:, 1]).sum() / 2
         if not area > 0:
             raise InputError(f"the target curve encloses {area:g} mm^2; give its points counter-clockwise, without crossing itself")
-        inverse = self._to_dirichlet.pinned
-        uv = self._extended(fit_curve(self.lengths_mm, target, scale_of=self.scale_of, slope_of=self._slope, values_of=inverse))
-        require_upright(self._V, self._F, uv, "the target curve")
-        return uv
+        on = self._roomy
+        inverse = on._to_dirichlet.pinned
+        return self._shaped(
+            fit_curve(on.lengths_mm, target, scale_of=on.scale_of, slope_of=on._slope, values_of=inverse), "inside the target curve"
+        )
 
-    def disk(self) -> FloatArray:
-        """The unit disk (6.2), (n, 2) without unit: every boundary vertex on the circle about (0, 0).
+    def disk(self) -> Shaped:
+        """The unit disk (6.2), without unit: every boundary vertex on the circle about (0, 0).
 
         Of the conformal maps onto the disk, which differ by a Moebius transformation, the one whose boundary scale
         factors are balanced: u has no first harmonic around the circle. `boundary[0]` lies at (1, 0).
@@ -180,11 +218,35 @@ class BffSolver:
         Raises
         ------
         RefusedError
-            A triangle would be turned over.
+            A triangle would be turned over, or shrink to nothing.
         """
-        uv = self._extended(fit_circle(self.lengths_mm, self.scale_of))
-        require_upright(self._V, self._F, uv, "the disk")
+        return self._shaped(fit_circle(self._roomy.lengths_mm, self._roomy.scale_of), "inside the disk")
+
+    def _asked(self, closed: FloatArray, turning: FloatArray, where: str, *, length: FloatArray | None = None) -> FloatArray:
+        require_closed(closed, turning, length=length)
+        uv = self._extended(closed)
+        require_upright(self._V, self._F, uv, where)
         return uv
+
+    def _shaped(self, places: FloatArray, where: str) -> Shaped:
+        on = self._roomy
+        uv = on._extended(places)
+        require_upright(on._V, on._F, uv, where, face_of=self._halved.face_of)
+        return Shaped(on._V, on._F, uv, self._halved.chords)
+
+    @cached_property
+    def _halved(self) -> Halved:
+        return halve_chords(self._V, self._F, topology=self._topology)
+
+    @cached_property
+    def _roomy(self) -> BffSolver:
+        """This, or a solver for the same surface with its chords halved."""
+        if not len(self._halved.chords):
+            return self
+        solver = BffSolver(self._halved.V, self._halved.F, robust=self._robust)
+        # A new loop may begin elsewhere; halving inner edges leaves its vertices and their order.
+        solver.boundary, solver.lengths_mm = self.boundary, self.lengths_mm
+        return solver
 
     def scale_of(self, turning: FloatArray) -> FloatArray:
         """(b,) log scale factors, of mean zero, that make the boundary turn by (b,) rad (Neumann to Dirichlet, 4.1)."""

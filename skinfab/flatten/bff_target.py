@@ -12,14 +12,11 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from skinfab.errors import RefusedError
 from skinfab.flatten.bff_curve import scaled_lengths, turning_of
 from skinfab.flatten.bff_descent import SlidingCurve, conformal_energy, slide
-from skinfab.flatten.distortion import shaped_areas
-from skinfab.tolerances import DEGENERATE_HEIGHT, TARGET_MOVE, TARGET_SETTLED
+from skinfab.tolerances import TARGET_MOVE, TARGET_SETTLED
 
 FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 Linear = Callable[[FloatArray], FloatArray]
 
 #: The plain rounds halve the circle's error (harmonic n of it falls to 1 / n): 34 to 1e-10. Anderson's take half as many.
@@ -30,6 +27,10 @@ _LOOK_BACK = 5
 
 #: A general curve settles to what the mesh resolves within a few rounds; the paper uses 10.
 _CURVE_ROUNDS = 30
+
+#: A boundary edge of the target is no shorter, for its length on the object, than this fraction of both its neighbours: the descent
+#: may leave two vertices on one spot.
+_PINCHED = 0.05
 
 #: Rounds without a better boundary, after which no more are tried.
 _PATIENCE = 5
@@ -105,31 +106,8 @@ def fit_curve(length: FloatArray, target: FloatArray, *, scale_of: Linear, slope
             least, calmest = moved, points
     if least <= TARGET_SETTLED * size:
         return calmest
-    slid = curve.point(slide(curve, best, slope_of=slope_of, values_of=values_of))
+    slid = curve.point(_unpinched(slide(curve, best, slope_of=slope_of, values_of=values_of), length, curve.total_mm))
     return slid if _energy(slid, slope_of) < lowest else curve.point(best)
-
-
-def require_upright(V: FloatArray, F: IntArray, uv: FloatArray, shape: str) -> None:
-    """Refuse a layout (n, 2) mm on `shape` in which a triangle is turned over or has no area, if it has one on the object.
-
-    Raises
-    ------
-    RefusedError
-    """
-    _, shaped = shaped_areas(V, F)
-    p, q, r = (uv[corner] for corner in F[shaped].T)
-    sides = np.stack([q - p, r - q, p - r])
-    height = (sides[0, :, 0] * sides[1, :, 1] - sides[0, :, 1] * sides[1, :, 0]) / (sides**2).sum(axis=2).max(axis=0)
-    if over := int((height < -DEGENERATE_HEIGHT).sum()):
-        raise RefusedError(
-            f"{over} of {len(F)} triangles come out upside down inside {shape}; give a rounder curve or a finer mesh, or keep it free"
-        )
-    flat = np.flatnonzero(shaped)[~(height > DEGENERATE_HEIGHT)]
-    if len(flat):
-        raise RefusedError(
-            f"{len(flat)} of {len(F)} triangles come out without area on {shape}, first triangle {flat[0]}: its vertices lie on one "
-            f"straight side; bulge it, give it more points where it should be round, or cut such triangles off (flatten.ears.cut_ears)"
-        )
 
 
 def _energy(points: FloatArray, slope_of: Linear) -> float:
@@ -140,6 +118,14 @@ def _energy(points: FloatArray, slope_of: Linear) -> float:
 def _ways(curve: SlidingCurve, length: FloatArray) -> FloatArray:
     """(b,) mm along the curve, in proportion to the edge lengths."""
     return np.concatenate([[0.0], np.cumsum(length)[:-1]]) * (curve.total_mm / length.sum())
+
+
+def _unpinched(at: FloatArray, length: FloatArray, total: float) -> FloatArray:
+    """Ways (b,) mm with single pinched edges opened; edges that are short along with a neighbour stay."""
+    gap = np.diff(np.append(at, total))
+    scale = gap / length
+    wide = np.maximum(gap, _PINCHED * length * np.minimum(np.roll(scale, 1), np.roll(scale, -1)))
+    return np.concatenate([[0.0], np.cumsum(wide)[:-1]]) * (total / wide.sum())
 
 
 def _accelerated(given: list[FloatArray], changed: list[FloatArray]) -> FloatArray:

@@ -4,11 +4,12 @@ import numpy as np
 import pytest
 import shapes
 
-from skinfab.errors import InputError
+from skinfab.errors import InputError, RefusedError
 from skinfab.flatten import bff, bff_target
 from skinfab.flatten.bff import BffSolver, flatten_disk
-from skinfab.flatten.bff_curve import turning_of
+from skinfab.flatten.bff_curve import close_curve, scaled_lengths, turning_of
 from skinfab.flatten.distortion import measure, singular_values
+from skinfab.flatten.ears import halve_chords
 from skinfab.flatten.laplacian import intrinsic
 from skinfab.linalg import Cholesky
 
@@ -189,7 +190,7 @@ def test_hemisphere_becomes_the_disk_of_stereographic_projection() -> None:
     for rings in (6, 12, 24, 48):
         V, F = shapes.cap(rings)
         solver = BffSolver(V, F)
-        uv = solver.disk()
+        uv = solver.disk().UV
         np.testing.assert_allclose(np.linalg.norm(uv[solver.boundary], axis=1), 1, atol=1e-12)
         error.append(np.abs(np.linalg.norm(uv, axis=1) - np.tan(np.arccos(V[:, 2]) / 2)).max())
     assert error[-1] < 5e-5 and (np.array(error[:-1]) / error[1:] > 3).all()  # second order
@@ -206,27 +207,27 @@ def test_disk_is_conformal_in_the_limit_whatever_vertex_comes_first() -> None:
     error = []
     for rings in (6, 12, 24, 48):
         V, F = egg(rings)
-        uv = BffSolver(V, F).disk()
+        uv = BffSolver(V, F).disk().UV
         s = singular_values(V, F, uv)
         assert s.min() > 0
         error.append((s[:, 0] / s[:, 1] - 1).mean())
         W, G, place = shapes.relabelled(V, F, 3)
-        assert distance(BffSolver(W, G).disk()[place], uv) < 1e-8
+        assert distance(BffSolver(W, G).disk().UV[place], uv) < 1e-8
     assert (np.log2(np.array(error[:-1]) / error[1:]) > 0.8).all() and error[-1] < 0.03
 
 
 def test_the_curve_of_the_free_boundary_gives_its_map_back() -> None:
     error = []
     for n in (12, 24, 48):
-        V, F = shapes.wavy(n)
-        solver = BffSolver(V, F)
+        halved = halve_chords(*shapes.wavy(n))  # beforehand, so that both maps are of the same triangles
+        solver = BffSolver(halved.V, halved.F)
         free = solver.free()
-        error.append(np.abs(solver.curve(free[solver.boundary]) - free).max())
+        error.append(np.abs(solver.curve(free[solver.boundary]).UV - free).max())
     assert max(error) < 1e-6
     for V, F in (shapes.cap(12), shapes.cylinder_sheet()):
         solver = BffSolver(V, F)
         free = solver.free()
-        np.testing.assert_allclose(solver.curve(free[solver.boundary]), free, atol=1e-9)
+        np.testing.assert_allclose(solver.curve(free[solver.boundary]).UV[: len(V)], free, atol=1e-9)
 
 
 def test_a_curve_is_met_and_the_map_to_it_conformal_in_the_limit() -> None:
@@ -237,7 +238,7 @@ def test_a_curve_is_met_and_the_map_to_it_conformal_in_the_limit() -> None:
     for rings in (6, 12, 24, 48):
         V, F = shapes.cap(rings)
         solver = BffSolver(V, F)
-        uv = solver.curve(ellipse)
+        uv = solver.curve(ellipse).UV
         np.testing.assert_allclose(np.hypot(*(uv[solver.boundary] / [30, 20]).T), 1, atol=2e-5)
         s = singular_values(V, F, uv)
         assert s.min() > 0
@@ -260,8 +261,8 @@ METHODS = {
     "scale": (lambda s, unit: s.scale(0.2 * np.cos(np.arange(len(s.boundary)))), 1),
     "lengths": (lambda s, unit: s.lengths(s.lengths_mm * (1.2 + 0.2 * np.cos(np.arange(len(s.boundary))))), 1),
     "angles": (lambda s, unit: s.angles(np.full(len(s.boundary), 2 * np.pi / len(s.boundary))), 1),
-    "curve": (lambda s, unit: s.curve(unit * CUSHION), 1),
-    "disk": (lambda s, unit: s.disk(), 0),
+    "curve": (lambda s, unit: s.curve(unit * CUSHION).UV, 1),
+    "disk": (lambda s, unit: s.disk().UV, 0),
 }
 
 
@@ -274,12 +275,15 @@ def test_unit_changes_nothing(method: str, unit: float) -> None:
     np.testing.assert_allclose(there / unit**power, here, atol=1e-9 * np.abs(here).max())
 
 
-def test_counters() -> None:
-    """Free, scale and lengths take two solves of one factorisation; a second one serves every angle, disk and curve after the first."""
-    V, F = shapes.wavy(20)
-    solver = BffSolver(V, F)
+@pytest.mark.parametrize(("mesh", "of_shapes"), [(egg(16), 2), (shapes.wavy(20), 4)], ids=["no chords", "chords"])
+def test_counters(mesh, of_shapes: int) -> None:
+    """Free, scale and lengths take two solves of one factorisation; a second one serves every angle, disk and curve after the first.
+
+    Where chords are halved, disks and curves have two of their own.
+    """
+    solver = BffSolver(*mesh)
     b = len(solver.boundary)
-    assert (b, solver.factorisations, solver.solves) == (80, 1, 0)
+    assert (solver.factorisations, solver.solves) == (1, 0)
     solver.free()
     solver.scale(np.ones(b))
     solver.lengths(solver.lengths_mm)
@@ -289,19 +293,19 @@ def test_counters() -> None:
     solver.angles(np.full(b, 2 * np.pi / b))
     assert (solver.factorisations, solver.solves) == (2, 11)
     solver.disk()  # a round one solve
-    assert solver.factorisations == 2 and solver.solves - 11 <= 20
+    assert solver.factorisations == of_shapes and solver.solves - 11 <= 21
     before = solver.solves
     a = 2 * np.pi * np.arange(4000) / 4000
     solver.curve(np.column_stack([3 * np.cos(a), 2 * np.sin(a)]))  # at most 30 rounds of two; then at most 60 steps of two
-    assert solver.factorisations == 2 and solver.solves - before <= 180
+    assert solver.factorisations == of_shapes and solver.solves - before <= 180
 
 
 @pytest.mark.parametrize("mesh", [shapes.cap(24), egg(24), shapes.wavy(24), shapes.cylinder_sheet(48, 10)])
 def test_acceleration_halves_the_rounds_to_the_same_circle(mesh, monkeypatch: pytest.MonkeyPatch) -> None:
     quick, plain = BffSolver(*mesh), BffSolver(*mesh)
-    uv = quick.disk()
+    uv = quick.disk().UV
     monkeypatch.setattr(bff_target, "_LOOK_BACK", 0)
-    np.testing.assert_allclose(plain.disk(), uv, atol=1e-9)
+    np.testing.assert_allclose(plain.disk().UV, uv, atol=1e-9)
     assert quick.solves < 20 and (quick.solves < 0.65 * plain.solves or plain.solves < 8)
 
 
@@ -309,8 +313,9 @@ def test_acceleration_halves_the_rounds_to_the_same_circle(mesh, monkeypatch: py
 def test_without_inner_vertices_only_the_boundary_is_solved_for(mesh) -> None:
     solver = BffSolver(*mesh)
     assert np.isfinite(solver.free()).all() and (solver.factorisations, solver.solves) == (0, 0)
-    maps = [solver.disk(), solver.angles(np.full(len(solver.boundary), 2 * np.pi / len(solver.boundary)))]
-    assert np.isfinite(maps).all() and solver.factorisations == 1
+    factorisations = (1, 3)[len(solver.disk().chords) > 0]
+    maps = [solver.disk().UV, solver.angles(np.full(len(solver.boundary), 2 * np.pi / len(solver.boundary)))]
+    assert all(np.isfinite(uv).all() for uv in maps) and solver.factorisations == factorisations
 
 
 @pytest.mark.parametrize(
@@ -319,15 +324,60 @@ def test_without_inner_vertices_only_the_boundary_is_solved_for(mesh) -> None:
         (lambda s: s.scale(np.zeros(7)), r"scale factors are 48 finite numbers, .* shape \(7,\)"),
         (lambda s: s.scale(np.full(48, np.nan)), "scale factors are 48 finite numbers"),
         (lambda s: s.lengths(np.r_[np.ones(47), 0]), "boundary edge 47 has length 0 mm in the target lengths"),
+        (
+            lambda s: s.lengths(np.r_[10 * s.lengths_mm.sum(), s.lengths_mm[1:]]),
+            "edge 0 has length .* in the target lengths, the others together .*; no closed curve",
+        ),
         (lambda s: s.angles(np.zeros(48)), "sum to 0 rad; a closed curve turns by 2 pi"),
         (lambda s: s.curve(np.zeros((2, 2))), r"three or more finite points .* \(2, 2\)"),
         (lambda s: s.curve(np.array([[0.0, 0], [0, 1], [1, 1]])), "counter-clockwise"),
     ],
-    ids=["count", "not a number", "no length", "angles", "two points", "clockwise"],
+    ids=["count", "not a number", "no length", "a length too long", "angles", "two points", "clockwise"],
 )
 def test_a_boundary_that_cannot_be_is_named(call, says: str) -> None:
     with pytest.raises(InputError, match=says):
         call(BffSolver(*shapes.wavy()))
+
+
+def random_turning(solver: BffSolver, size: float) -> np.ndarray:
+    turning = size * np.random.default_rng(0).standard_normal(len(solver.boundary))
+    return turning + (2 * np.pi - turning.sum()) / len(turning)
+
+
+@pytest.mark.parametrize(
+    ("call", "says"),
+    [
+        (lambda s: s.angles(random_turning(s, 0.5)), r"\d+ of 288 triangles come out upside down with these turning angles"),
+        (lambda s: s.lengths(s.lengths_mm * np.r_[20, np.ones(47)]), r"the boundary closes only with edge \d+ \d+ % off its length"),
+        (
+            lambda s: s.lengths(s.lengths_mm * np.where(np.arange(48) % 4 == 0, 20, 1)),
+            r"\d+ of 288 triangles come out upside down with these lengths",
+        ),
+    ],
+    ids=["angles", "length", "lengths"],
+)
+def test_a_boundary_that_was_not_met_or_turns_triangles_over_is_refused(call, says: str) -> None:
+    with pytest.raises(RefusedError, match=says):
+        call(BffSolver(*shapes.wavy()))
+
+
+def comb(teeth: int = 6, depth: float = 0.5):
+    """A sheet with a row of sharp teeth on one side."""
+    V, F = shapes.grid(teeth, 4)
+    k = np.arange(teeth)
+    tips = np.column_stack([(k + 0.5) / teeth, np.full(teeth, -depth), np.zeros(teeth)])
+    return np.vstack([V, tips]), np.vstack([F, np.column_stack([k, len(V) + k, k + 1])])
+
+
+def test_edges_that_would_run_backwards_are_refused() -> None:
+    """Turned like a circle the teeth's edges all but vanish, and closing the curve takes more than is left of them."""
+    V, F = comb()
+    solver = BffSolver(V, F)
+    turning = np.full(len(solver.boundary), 2 * np.pi / len(solver.boundary))
+    plain = close_curve(scaled_lengths(solver.lengths_mm, solver.scale_of(turning)), turning)
+    assert np.abs(turning_of(plain) - turning).max() > 3
+    with pytest.raises(RefusedError, match=r"closes only with edges that run backwards: its turning is off by 3\.14 rad"):
+        solver.angles(turning)
 
 
 def pair(V, F):
