@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +19,7 @@ from skinfab.mould_plan import MouldPlan, mould_plan
 from skinfab.mould_taper import tapered
 from skinfab.pieces import Piece
 from skinfab.skin import Skin
-from skinfab.tolerances import CAVITY_FRACTION
+from skinfab.tolerances import CAVITY_FRACTION, MOULD_GRID_MM
 from skinfab.wire_exits import WirePad, WireSlot, wire_pads
 
 #: How far the wall stands above the silicone, mm: the pour does not run over before it levels, and
@@ -94,9 +94,9 @@ def casting_mould(
     """The mould of one flat piece: floor plate, wall, registration marks, wire slots, adhesive lips.
 
     The wall fills the darts, and leans outwards by the material's draft about the piece's outline at half the
-    silicone's depth. Its top is `FREEBOARD_MM` above the silicone, and the slots for the wires end
-    at the silicone's surface, so that nothing runs out. A lip is as thick as the top layer and as wide as the
-    material says: it is glued over the other side of its seam.
+    silicone's depth; where an outline is too fine for that it is upright, with a warning. Its top is `FREEBOARD_MM`
+    above the silicone, and the slots for the wires end at the silicone's surface, so that nothing runs out. A lip is
+    as thick as the top layer and as wide as the material says: it is glued over the other side of its seam.
 
     Parameters
     ----------
@@ -123,11 +123,23 @@ def casting_mould(
     >>> from skinfab.material import load_material
     >>> F, UV = np.array([[0, 1, 2], [0, 2, 3]]), np.array([[0.0, 0], [40, 0], [40, 20], [0, 20]])
     >>> casting_mould(Piece("P1", np.arange(2), np.arange(4), F, UV), material=load_material())
-    CastingMould('P1', 128 triangles, cavity 2.00 ml)
+    CastingMould('P1', 116 triangles, cavity 2.00 ml)
     """
     depth = material.depth if depth is None else depth
     if not (np.isfinite(depth) and depth > 0):
         raise InputError(f"the silicone's depth is {depth:g} mm; it must be positive")
+    try:
+        return _cast(piece, material, depth, pads, lips)
+    except RefusedError:
+        if not material.mould.draft_deg:
+            raise
+    upright = _cast(piece, replace(material, mould=replace(material.mould, draft_deg=0.0)), depth, pads, lips)
+    return replace(
+        upright, warnings=(*upright.warnings, f"piece {piece.id}: its outline is too fine for leaning walls, so they are upright")
+    )
+
+
+def _cast(piece: Piece, material: Material, depth: float, pads: Sequence[WirePad], lips: Sequence[NDArray[np.float64]]) -> CastingMould:
     plan = mould_plan(piece, mould=material.mould, depth=depth, freeboard=FREEBOARD_MM, pads=pads, lips=lips)
     floor_z = material.mould.floor
     fill_z, top_z = floor_z + depth, floor_z + depth + FREEBOARD_MM
@@ -219,7 +231,8 @@ def _prism(region: Any, low: float, high: float) -> Any:
 
 def _printable(solid: Any) -> tuple[NDArray[np.float32], NDArray[np.int64]]:
     """Vertices and triangles in single precision, in an order that depends on the shape alone."""
-    mesh = solid.to_mesh64()
+    # Points nearer to each other than the grid could become one in single precision, and two edges with them.
+    mesh = solid.simplify(MOULD_GRID_MM).to_mesh64()
     V, back = np.unique(mesh.vert_properties[:, :3].astype(np.float32), axis=0, return_inverse=True)
     F = back.reshape(-1)[mesh.tri_verts.astype(np.int64)]
     F = F[(F[:, 0] != F[:, 1]) & (F[:, 1] != F[:, 2]) & (F[:, 2] != F[:, 0])]

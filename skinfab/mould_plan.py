@@ -16,10 +16,10 @@ from numpy.typing import NDArray
 from shapely.geometry import MultiPolygon, Polygon, box
 from shapely.geometry.base import BaseGeometry
 
-from skinfab.errors import InputError
+from skinfab.errors import InputError, RefusedError
 from skinfab.material import Mould
 from skinfab.pieces import Piece
-from skinfab.tolerances import MOULD_GRID_MM, MOULD_SLIT_MM, OVERLAP_FRACTION, PRINTABLE_WALL_MM
+from skinfab.tolerances import CAVITY_FRACTION, MOULD_GRID_MM, MOULD_SLIT_MM, OVERLAP_FRACTION, PRINTABLE_WALL_MM
 from skinfab.wire_exits import WirePad, WireSlot, plan_exits, slot_region, through_wall
 
 
@@ -81,8 +81,8 @@ def mould_plan(
 ) -> MouldPlan:
     """Plan a piece's mould.
 
-    Walls with a draft lean about the piece's outline at half the silicone's depth: what the cast gains above
-    it loses below, so that its volume stays the piece's area times its depth.
+    Walls with a draft lean about the piece's outline at half the silicone's depth, or a little inside where it is
+    jagged: what the cast gains above it loses below, so that its volume stays the piece's area times its depth.
 
     Parameters
     ----------
@@ -101,6 +101,8 @@ def mould_plan(
     ------
     InputError
         A mould dimension that cannot be printed, or the piece has no area.
+    RefusedError
+        The piece is narrower than its walls lean.
     """
     for name in ("wall", "floor"):
         if getattr(mould, name) < PRINTABLE_WALL_MM:
@@ -115,10 +117,9 @@ def mould_plan(
     cavity = cavity_region(piece)
     if cavity.is_empty:
         raise InputError(f"piece {piece.id} has no area to cast; flatten it again")
-    below, brim_at, top_at = _leans(mould, depth, freeboard)
-    bottom, brim, top = (_on_grid(cavity.buffer(by, join_style="mitre")) if by else cavity for by in (below, brim_at, top_at))
+    bottom, brim, top, brim_at = _sections(cavity, mould, depth, freeboard)
     if bottom.is_empty:
-        raise InputError(f"piece {piece.id} is too narrow for walls with mould.draft_deg = {mould.draft_deg:g}; lower it in the profile")
+        raise RefusedError(f"piece {piece.id} is too narrow for walls with mould.draft_deg = {mould.draft_deg:g}; lower it in the profile")
     slots, notes = plan_exits(pads, piece=piece.id, cavity=cavity, outer=_outer(cavity, mould), mould=mould) if len(pads) else ([], ())
     # Either side of a slot a wall stays towards the lip; the way out is free as far as a lip of this seam reaches.
     ways_out = shapely.union_all([slot_region(s, mould.wire_exit + 2 * mould.wall, longer=mould.lip + mould.wall) for s in slots])
@@ -174,15 +175,11 @@ def cavity_region(piece: Piece) -> MultiPolygon:
     outline: BaseGeometry = Polygon(piece.outline)
     if not (outline.is_valid and abs(outline.area - _triangle_area(piece)) <= OVERLAP_FRACTION * outline.area):
         outline = shapely.union_all(shapely.polygons(piece.UV[piece.F]), grid_size=MOULD_GRID_MM)
-    # Growing square and shrinking round leaves every convex corner sharp and widens a corner contact
-    # to a neck, which an STL can hold.
-    half = MOULD_SLIT_MM / 2
-    healed = outline.buffer(half, join_style="mitre", mitre_limit=5).buffer(-half, join_style="round", quad_segs=1)
-    return _on_grid(healed)
+    return _healed(outline)
 
 
-def _leans(mould: Mould, depth: float, freeboard: float) -> tuple[float, float, float]:
-    """How far the cavity's wall stands outside the piece at its floor, at the silicone's surface and at its top, mm.
+def _sections(cavity: MultiPolygon, mould: Mould, depth: float, freeboard: float) -> tuple[MultiPolygon, MultiPolygon, MultiPolygon, float]:
+    """The cavity's sections at its floor, at the silicone's surface and at the wall's top, and how far the middle one stands out, mm.
 
     Raises
     ------
@@ -193,15 +190,39 @@ def _leans(mould: Mould, depth: float, freeboard: float) -> tuple[float, float, 
         raise InputError(f"mould.draft_deg is {mould.draft_deg:g}; it counts from upright and must be below 90")
     slope = math.tan(math.radians(mould.draft_deg))
     if (depth + freeboard) * slope < MOULD_SLIT_MM:
-        return 0.0, 0.0, 0.0
-    top = (depth / 2 + freeboard) * slope
+        return cavity, cavity, cavity, 0.0
+    half, top = depth / 2 * slope, (depth / 2 + freeboard) * slope
     if top > mould.wall / 2:
         most = math.floor(math.degrees(math.atan(mould.wall / (depth + 2 * freeboard))))
         raise InputError(
             f"mould.draft_deg is {mould.draft_deg:g}, which takes {top:.2f} mm off the top of a wall of {mould.wall:g} mm; "
             f"lower it to {most:d} or make the wall thicker"
         )
-    return -depth / 2 * slope, depth / 2 * slope, top
+    middle, shift = cavity, 0.0
+    for _ in range(3):
+        bottom, brim = (_offset(cavity, shift + by) for by in (-half, half))
+        # Simpson's rule is exact while corners move in straight lines. A jagged outline gains more above than it loses below.
+        excess = (bottom.area + 4 * middle.area + brim.area) / 6 - cavity.area
+        if abs(excess) <= CAVITY_FRACTION / 10 * cavity.area:
+            break
+        shift -= excess / middle.length
+        middle = _offset(cavity, shift)
+    return bottom, brim, _offset(cavity, shift + top), max(shift + half, 0.0)
+
+
+def _offset(region: MultiPolygon, by: float) -> MultiPolygon:
+    """Grown by so much, or shrunk; corners stay sharp."""
+    return _healed(region.buffer(by, join_style="mitre"))
+
+
+def _healed(region: BaseGeometry) -> MultiPolygon:
+    """Without slits and corner contacts.
+
+    Growing square and shrinking round leaves every convex corner sharp and widens a corner contact to a neck,
+    which an STL can hold.
+    """
+    half = MOULD_SLIT_MM / 2
+    return _on_grid(region.buffer(half, join_style="mitre", mitre_limit=5).buffer(-half, join_style="round", quad_segs=1))
 
 
 def _outer(inside: BaseGeometry, mould: Mould) -> MultiPolygon:

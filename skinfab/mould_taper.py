@@ -48,7 +48,10 @@ def tapered(narrow: MultiPolygon, wide: MultiPolygon, *, z: tuple[float, float, 
     V = np.column_stack([points, np.repeat(z, [n, n, m, m])])
     ring = _lifted(shapely.difference(wide, narrow), low, high, n)
     F = np.vstack([low.cap()[:, ::-1], low.wall(n), ring[:, ::-1], high.wall(m) + 2 * n, high.cap() + 2 * n + m])
-    return Manifold(Mesh64(V, F.astype(np.uint64)))
+    solid = Manifold(Mesh64(V, F.astype(np.uint64)))
+    if solid.is_empty():
+        raise RefusedError("a mould's leaning walls do not close; lower mould.draft_deg in the material profile")
+    return solid
 
 
 class _Outline:
