@@ -26,3 +26,4 @@ lock:
 pictures: demo
 	@mkdir -p docs/pictures
 	cp demo_out/preview.png docs/pictures/robot_finger.png
+	$(PYTHON) tools/draw_patterns.py

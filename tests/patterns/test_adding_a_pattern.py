@@ -1,0 +1,85 @@
+"""docs/patterns.md: its example is a pattern as soon as its file is there, and the page is in step with the code."""
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from skinfab.drawings.catalogue import as_markdown
+from skinfab.drawings.pattern_picture import pattern_svg
+from skinfab.patterns.registry import PATTERNS, make_pattern
+
+ROOT = Path(__file__).parents[2]
+PAGE = (ROOT / "docs/patterns.md").read_text(encoding="utf-8")
+
+#: What stands for copying the file into the package: its folder is one more that patterns are found in.
+DROP_IN = "import skinfab.patterns\nskinfab.patterns.__path__.append({folder!r})\n"
+
+
+@pytest.fixture(scope="module")
+def dropped(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
+    """The environment in which the page's file lies beside the other patterns, for Python started with ``-c "import drop_in"``."""
+    folder = tmp_path_factory.mktemp("dropped")
+    (folder / "patterns").mkdir()
+    code = re.search(r"```python\n(.*?)```", PAGE, re.S)[1]
+    assert code.count("\n") < 60
+    (folder / "patterns/contact_ring.py").write_text(code)
+    (folder / "drop_in.py").write_text(DROP_IN.format(folder=str(folder / "patterns")))
+    return {**os.environ, "PYTHONPATH": str(folder)}
+
+
+def run(environment: dict[str, str], *arguments: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run([sys.executable, *arguments], capture_output=True, text=True, cwd=ROOT, env=environment, timeout=600)
+
+
+def skinfab(environment: dict[str, str], *arguments: object) -> subprocess.CompletedProcess[str]:
+    program = "import sys, drop_in; from skinfab.cli.main import main; sys.exit(main(sys.argv[1:]))"
+    return run(environment, "-c", program, *map(str, arguments))
+
+
+def test_without_the_file_there_is_no_such_pattern() -> None:
+    assert "contact-ring" not in PATTERNS
+
+
+def test_the_command_line_lists_it(dropped: dict[str, str]) -> None:
+    said = skinfab(dropped, "place", "--patterns").stdout
+    assert "\ncontact-spiral (contact)" in f"\n{said}" and "contact-ring (contact): One ring between two leads." in said
+    assert re.search(r"^  d     Diameter of the ring; at least 2 b\.$", said, re.M)
+
+
+def test_a_sensors_file_takes_it_as_far_as_the_gcode(dropped: dict[str, str], tmp_path: Path) -> None:
+    asked = next(text for text in re.findall(r"```toml\n(.*?)```", PAGE, re.S) if "contact-ring" in text)
+    (tmp_path / "ring.toml").write_text(asked)
+    made = skinfab(dropped, "make", ROOT / "meshes/cube.obj", "-o", tmp_path / "out", "--sensors", tmp_path / "ring.toml")
+    assert made.returncode == 0, made.stderr
+    assert "G3 " in (tmp_path / "out/gcode/P1.gcode").read_text()
+    listed = skinfab(dropped, "place", tmp_path / "out/skin.skin", "--list")
+    assert listed.stdout.startswith("C1: contact-ring on P1 at ")
+
+
+def test_the_property_tests_run_over_it(dropped: dict[str, str]) -> None:
+    files = [str(path.relative_to(ROOT)) for path in sorted((ROOT / "tests/patterns").glob("test_every_pattern*.py"))]
+    done = run(dropped, "-m", "pytest", "-q", "-p", "drop_in", "-p", "no:cacheprovider", "-p", "no:xdist", *files, "-k", "contact-ring")
+    ran = re.search(r"(\d+) passed, \d+ deselected", done.stdout)
+    assert done.returncode == 0 and ran and int(ran[1]) == 8, done.stdout
+
+
+def test_two_of_one_kind_are_refused(dropped: dict[str, str], tmp_path: Path) -> None:
+    twin = Path(dropped["PYTHONPATH"], "patterns/contact_ring.py").read_text()
+    (tmp_path / "ring_again.py").write_text(twin)
+    program = f"import drop_in, skinfab.patterns as p; p.__path__.append({str(tmp_path)!r}); import skinfab.patterns.registry"
+    done = run(dropped, "-c", program)
+    assert "two patterns are of kind 'contact-ring': in skinfab.patterns.contact_ring and in skinfab.patterns.ring_again" in done.stderr
+
+
+def test_the_page_is_in_step_with_the_patterns() -> None:
+    assert as_markdown(pictures="pictures") in PAGE, "run tools/draw_patterns.py"
+
+
+@pytest.mark.parametrize("kind", PATTERNS)
+def test_the_picture_is_in_step_with_the_pattern(kind: str) -> None:
+    drawn = (ROOT / f"docs/pictures/pattern-{kind}.svg").read_text(encoding="utf-8")
+    assert drawn == pattern_svg(make_pattern(kind, PATTERNS[kind].example)), "run tools/draw_patterns.py"
