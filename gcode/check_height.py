@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from gcode.clearance import chords, distance
+from gcode.clearance import Laid
 from gcode.geometry import Shape, Straight
 from gcode.printer import Printer
 from gcode.program import XY_DECIMALS
@@ -21,14 +21,14 @@ def height_findings(judged: Trace, printer: Printer) -> Iterator[Finding]:
     A low travel is accepted as an overrun only: straight into or out of an extrusion, no longer than the profile's
     own, and clear of all ink but the bead it leaves.
     """
-    laid: list[Shape] = []
+    laid = Laid()
     for k, move in enumerate(judged.moves):
         shape = move.shape
         if shape is None:
             continue
         if move.e > 0:
             yield from _print_height(move, printer)
-            laid.append(shape)
+            laid.add(shape)
         elif (low := _lowest(move)) is not None and low < printer.heights.travel - STEP_XY:
             before = judged.moves[k - 1] if k else None
             after = judged.moves[k + 1] if k + 1 < len(judged.moves) else None
@@ -63,7 +63,7 @@ def _last_inked(before: Move | None, judged: Trace, k: int) -> Move | None:
     return before if before is not None and before.e > 0 else None
 
 
-def _low_travel(move: Move, low: float, before: Move | None, after: Move | None, laid: list[Shape], printer: Printer) -> Iterator[Finding]:
+def _low_travel(move: Move, low: float, before: Move | None, after: Move | None, laid: Laid, printer: Printer) -> Iterator[Finding]:
     shape = move.shape
     process = printer.process
     allowed = process.overrun_end if before is not None else process.overrun_start if _enters(after) else 0.0
@@ -89,7 +89,7 @@ def bead_radius(move: Move | None, printer: Printer) -> float:
     return math.sqrt(max(move.e, 0.0) / printer.pump.e_per_mm3 / move.shape.length / math.pi)
 
 
-def crosses_ink(run: Shape, laid: list[Shape], radius: float, *, leaves: bool) -> bool:
+def crosses_ink(run: Shape, laid: Laid, radius: float, *, leaves: bool) -> bool:
     """Does a straight run come within a bead's `radius` (mm) of laid ink?
 
     Where it `leaves` the end of that ink, its first part, one radius long, lies on the bead by necessity.
@@ -100,11 +100,11 @@ def crosses_ink(run: Shape, laid: list[Shape], radius: float, *, leaves: bool) -
             return False
         start = run.point_at(radius / run.length)
     # The chords may lie inside an arc by their tolerance, and places are rounded.
-    return distance((start, run.end), chords(laid)) < radius - PREVIEW_CHORD_MM - STEP_XY
+    return laid.distance((start, run.end)) < radius - PREVIEW_CHORD_MM - STEP_XY
 
 
 def free_length(
-    start: tuple[float, float], direction: tuple[float, float], wanted: float, laid: list[Shape], radius: float, *, leaves: bool
+    start: tuple[float, float], direction: tuple[float, float], wanted: float, laid: Laid, radius: float, *, leaves: bool
 ) -> float:
     """The longest run from `start`, up to `wanted` mm, in tenths of it, that stays clear of `laid` ink."""
     for tenths in range(10, 0, -1):

@@ -17,6 +17,40 @@ def chords(shapes: Sequence[Shape]) -> NDArray[np.float64]:
     return np.array([(p.start, p.end) for p in pieces]).reshape(-1, 2, 2)
 
 
+class Laid:
+    """Ink in the order it is laid; each shape is cut into chords once, however often a distance is asked for.
+
+    Examples
+    --------
+    >>> from gcode.geometry import Straight
+    >>> laid = Laid([Straight((0.0, 1.0), (5.0, 1.0))])
+    >>> laid.add(Straight((0.0, 3.0), (5.0, 3.0)))
+    >>> laid.distance([(1.0, 2.5), (2.0, 2.5)])
+    0.5
+    """
+
+    def __init__(self, shapes: Sequence[Shape] = ()) -> None:
+        self._waiting = list(shapes)
+        self._pieces = np.empty((0, 2, 2))
+        self._count = 0
+
+    def add(self, shape: Shape) -> None:
+        """One more."""
+        self._waiting.append(shape)
+
+    def distance(self, run: ArrayLike) -> float:
+        """Least distance of a straight run, (2, 2) mm, from all of it, as `distance`."""
+        if self._waiting:
+            new = chords(self._waiting)
+            self._waiting = []
+            count = self._count + len(new)
+            if count > len(self._pieces):  # room for as many again, so that each piece is copied twice at most
+                self._pieces = np.concatenate([self._pieces[: self._count], np.empty((2 * count - self._count, 2, 2))])
+            self._pieces[self._count : count] = new
+            self._count = count
+        return distance(run, self._pieces[: self._count])
+
+
 def distance(run: ArrayLike, pieces: NDArray[np.float64]) -> float:
     """Least distance of one straight run, (2, 2) mm, from any of (n, 2, 2) mm; infinite where there is none.
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 from gcode.check_height import free_length
 from gcode.check_wall import Wall, needed_room, wall_of
+from gcode.clearance import Laid
 from gcode.emit import on_grid_of
 from gcode.geometry import Curve, Point, Shape, Straight, shape_of
 from gcode.printer import Cleaning, Park, Printer
@@ -17,6 +18,7 @@ from skinfab.errors import InputError, RefusedError
 from skinfab.material import Material
 from skinfab.paths import Path
 from skinfab.pieces import Piece
+from skinfab.placement.distance import Curves, distance
 from skinfab.placement.sensor import Sensor
 
 
@@ -88,7 +90,7 @@ def plan(piece: Piece, sensors: Sequence[Sensor], *, printer: Printer, material:
             raise InputError(f"sensor {sensor.id} lies on piece {sensor.piece}, not on {piece.id}")
     offset = bed_offset(piece, printer)
     paths = {s.id: s.printed_path.transformed(angle=0.0, shift=offset) for s in sensors}
-    planner = _Planner(printer, material, wall_of(piece, material, offset))
+    planner = _Planner(printer, material, wall_of(piece, material, offset), paths)
     planner.begin()
     for name, path in nearest_order(paths, start=(printer.bed.origin[0], printer.bed.origin[1])):
         planner.pattern(name, path)
@@ -122,11 +124,12 @@ def nearest_order(paths: dict[str, Path], *, start: Point) -> list[tuple[str, Pa
 class _Planner:
     """Appends the steps of pattern after pattern and remembers the ink that is laid."""
 
-    def __init__(self, printer: Printer, material: Material, wall: Wall) -> None:
+    def __init__(self, printer: Printer, material: Material, wall: Wall, paths: dict[str, Path]) -> None:
         self.printer, self.material = printer, material
         self.area = material.ink.bead_area_mm2
         self.wall = wall
-        self.laid: list[Shape] = []
+        self.laid = Laid()
+        self.paths = paths
         self.steps: list[Step] = []
         self.warnings: list[str] = []
 
@@ -191,7 +194,7 @@ class _Planner:
         return Prime(volume, self._pump_rate())
 
     def _run(self, name: str, kind: str, at: Point, direction: Point, wanted: float, *, leaves: bool) -> Point:
-        """Where a run along the tangent ends: short of wet ink, and of the mould's wall by all of the nozzle."""
+        """Where a run along the tangent ends: short of wet ink, of the mould's wall by all of the nozzle, and with ink of what comes."""
         if not wanted:
             return at
         radius = math.sqrt(self.area / math.pi)
@@ -200,11 +203,24 @@ class _Planner:
         for tenths in range(round(10 * length / wanted), -1, -1):
             length = wanted * tenths / 10
             end = (at[0] + direction[0] * length, at[1] + direction[1] * length)
-            if not length or self.wall.room([Straight(at, end).segment]) >= need:
+            run = Straight(at, end)
+            if not length or (self.wall.room([run.segment]) >= need and not (kind == "print-overrun" and self._meets_path(name, run))):
                 break
         if length < wanted * (1 - 1e-9):
             self.warnings.append(f"{name}: {kind} cut from {wanted:g} to {length:.2g} mm, for the mould's wall or wet ink is near")
         return end if length else at
+
+    def _meets_path(self, name: str, run: Straight) -> bool:
+        """Would ink along `run`, before the path of that name, touch what is printed later: another pattern, or its own?"""
+        ink = self.material.ink
+        for other, path in self.paths.items():
+            segments = (
+                path.segments if other != name else [s for s in path.segments if not {shape_of(s).start, shape_of(s).end} & {run.start}]
+            )
+            room = ink.bead_width + (self.material.gap if other != name else 0.0)
+            if segments and distance(Curves.of_segments([run.segment]), Curves.of_segments(segments)) < room:
+                return True
+        return False
 
     def _extrude(self, name: str, shapes: Sequence[Shape]) -> None:
         lowered: Counter[tuple[str, float, float]] = Counter()
@@ -216,7 +232,7 @@ class _Planner:
             # No command may ask for more E than the firmware accepts.
             count = max(math.ceil(shape.length * self.area * self.printer.pump.e_per_mm3 / self.printer.pump.max_e * (1 + 1e-9)), 1)
             self.steps += [Extrude(part, self.area * part.length, speed) for part in shape.split(count)]
-            self.laid.append(shape)
+            self.laid.add(shape)
         for (why, nominal, speed), times in sorted(lowered.items()):
             self.warnings.append(
                 f"{name}: speed lowered from {nominal:.4g} to {speed:.4g} mm/s on {times} segment{'s' * (times > 1)} by {why}"

@@ -4,6 +4,7 @@ import pytest
 
 from gcode.check import check_text
 from gcode.check_height import bead_radius, crosses_ink, free_length
+from gcode.clearance import Laid
 from gcode.geometry import Straight
 from gcode.printer import Printer
 from gcode.trace import trace
@@ -44,9 +45,9 @@ def test_bead_radius_is_that_of_a_round_bead(printer: Printer) -> None:
 
 
 def test_free_length_stops_before_ink() -> None:
-    wall = Straight((1.0, -5.0), (1.0, 5.0))
-    assert free_length((0.0, 0.0), (1.0, 0.0), 2.0, [wall], 0.3, leaves=False) == pytest.approx(0.6)
-    assert free_length((0.0, 0.0), (-1.0, 0.0), 2.0, [wall], 0.3, leaves=False) == 2.0
-    assert free_length((0.9, 0.0), (1.0, 0.0), 2.0, [wall], 0.3, leaves=False) == 0.0
-    assert not crosses_ink(Straight((1.0, 5.0), (1.0, 6.0)), [wall], 0.3, leaves=True)
-    assert crosses_ink(Straight((1.0, 5.0), (1.0, 4.0)), [wall], 0.3, leaves=True)
+    wall = Laid([Straight((1.0, -5.0), (1.0, 5.0))])
+    assert free_length((0.0, 0.0), (1.0, 0.0), 2.0, wall, 0.3, leaves=False) == pytest.approx(0.6)
+    assert free_length((0.0, 0.0), (-1.0, 0.0), 2.0, wall, 0.3, leaves=False) == 2.0
+    assert free_length((0.9, 0.0), (1.0, 0.0), 2.0, wall, 0.3, leaves=False) == 0.0
+    assert not crosses_ink(Straight((1.0, 5.0), (1.0, 6.0)), wall, 0.3, leaves=True)
+    assert crosses_ink(Straight((1.0, 5.0), (1.0, 4.0)), wall, 0.3, leaves=True)

@@ -3,10 +3,11 @@
 import math
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gcode.clearance import chords, distance
+from gcode.clearance import Laid, chords, distance
 from gcode.geometry import Curve, Straight
 
 point = st.tuples(st.floats(-10, 10), st.floats(-10, 10))
@@ -34,3 +35,15 @@ def test_chords_of_mixed_shapes() -> None:
     assert len(pieces) > 5 and pieces.shape[1:] == (2, 2)
     assert (pieces[1:, 0] == pieces[:-1, 1]).all()
     assert chords([]).shape == (0, 2, 2)
+
+
+def test_laid_ink_is_cut_into_chords_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    shapes = [Curve((k, 0.0), (k + 1.0, 0.0), (k + 0.5, 0.0), clockwise=bool(k % 2)) for k in range(200)]
+    cut = []
+    monkeypatch.setattr("gcode.clearance.chords", lambda waiting: cut.append(len(waiting)) or chords(waiting))
+    laid, run = Laid(), ((0.3, 2.0), (150.0, 1.5))
+    for k, shape in enumerate(shapes):
+        laid.add(shape)
+        if k % 7 == 0:
+            assert laid.distance(run) == distance(run, chords(shapes[: k + 1]))
+    assert sum(cut) == 197 and Laid().distance(run) == math.inf

@@ -18,6 +18,7 @@ from skinfab.paths import Arc, Line, Path
 from skinfab.patterns.contact_spiral import ContactSpiral
 from skinfab.patterns.strain_lines import StrainLines
 from skinfab.pieces import Piece
+from skinfab.placement.distance import Curves, distance
 from skinfab.placement.sensor import Sensor
 
 
@@ -174,3 +175,45 @@ def test_wrong_sensors_are_told(make_piece: Callable, make_sensor: Callable, hai
         plan(make_piece(50, 50), [], printer=printer, material=material)
     with pytest.raises(InputError, match="C1 lies on piece P2, not on P1"):
         plan(make_piece(50, 50), [make_sensor("C1", hairpin, 0, 0, piece="P2")], printer=printer, material=material)
+
+
+def test_ink_before_a_path_keeps_off_what_is_printed_later(
+    make_piece: Callable, make_sensor: Callable, printer: Printer, material: Material
+) -> None:
+    """A print-overrun of 6 mm would run across its neighbour, 3 mm away, whichever of the two comes first."""
+    along, across = Path((Line((0, 0), (20, 0)),)), Path((Line((0, 0), (0, 20)),))
+    long = replace(printer, process=replace(printer.process, print_overrun=6.0))
+    for dx in (-3, 23):
+        sensors = [make_sensor("A", along, 50, 50), make_sensor("B", across, 50 + dx, 42)]
+        planned = plan(make_piece(120, 100), sensors, printer=long, material=material)
+        shapes = {"A": [], "B": []}
+        pattern = ""
+        for step in planned.program.steps:
+            if isinstance(step, Comment) and step.text.startswith("pattern "):
+                pattern = step.text.split()[1]
+            elif isinstance(step, Extrude):
+                shapes[pattern].append(step.shape.segment)
+        apart = distance(Curves.of_segments(shapes["A"]), Curves.of_segments(shapes["B"]))
+        assert apart >= material.ink.bead_width + material.gap - 1e-4
+
+
+def test_travel_never_crosses_wet_ink_at_print_height(make_piece: Callable, printer: Printer, material: Material) -> None:
+    """Twelve spirals and long overruns: every way below the wall's top is within an overrun of its own pattern."""
+    long = replace(printer, process=replace(printer.process, overrun_start=8.0, overrun_end=8.0, print_overrun=4.0))
+    spiral = ContactSpiral(n=3, x=2.0, b=3.0, l=6.0, s=22.0)
+    sensors = [Sensor(f"C{k}", "P1", spiral, 40 + 45 * (k % 4), 40 + 45 * (k // 4), 0.9 * k, k) for k in range(12)]
+    planned = plan(make_piece(260, 200), sensors, printer=long, material=material)
+    assert check_program(planned.program, long) == ()
+    ink, z, at = [], 10.0, (0.0, 0.0)
+    for step in planned.program.steps:
+        if isinstance(step, Extrude):
+            ink.append(step.shape.segment)
+            at = step.shape.end
+        elif isinstance(step, Travel):
+            to = (at[0] if step.x is None else step.x, at[1] if step.y is None else step.y)
+            z = z if step.z is None else step.z
+            if to != at and z < 3.0:
+                # What it leaves or enters lies under its first radius of bead; beyond that it is free.
+                away = Curves.of_segments([Line(np.array(at) + (np.array(to) - at) * min(0.5 / math.dist(at, to), 1.0), to)])
+                assert not ink or distance(away, Curves.of_segments(ink)) > 0.35
+            at = to
