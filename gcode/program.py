@@ -12,7 +12,7 @@ from typing import TypeAlias
 
 from gcode.geometry import Curve, Point, Shape, Straight
 from skinfab.errors import InputError
-from skinfab.tolerances import JOIN_MM, SHORT_ARC_MM
+from skinfab.tolerances import GRID_FLOW_FRACTION, JOIN_MM, SHORT_ARC_MM
 
 #: Decimals of the emitted words.
 XY_DECIMALS, E_DECIMALS, F_DECIMALS = 4, 5, 1
@@ -209,15 +209,22 @@ class InkGrid:
     def _extrude(self, step: Extrude) -> list[Step]:
         done: list[Step] = []
         parts = step.shape.split(_half_turns(step.shape)) if isinstance(step.shape, Curve) else (step.shape,)
-        speed = speed_on_grid(step.speed)
         for part in parts:
             self.owed += step.volume * self.e_per_mm3 / len(parts)
             shape = self._shape(part)
             if shape is None:
                 continue
+            speed = speed_on_grid(step.speed * self._slowing(step.volume / len(parts) / part.length, shape))
             self.at = shape.end
             done.append(Extrude(shape, self.laid(shape, speed), speed))
         return done
+
+    def _slowing(self, area: float, shape: Shape) -> float:
+        """Share of the speed that keeps the flow what it was, where a shape has become shorter or bears the ink of one left out."""
+        owed = self.owed / self.e_per_mm3
+        share = area * shape.length / owed if owed > 0 else 1.0
+        # The grid alone changes the flow of any shape a little; that is no reason to slow down.
+        return share if share < 1 - GRID_FLOW_FRACTION else 1.0
 
     def _shape(self, part: Shape) -> Shape | None:
         start: Point = (self.at[0], self.at[1])  # type: ignore[assignment]  # a Program's extrusions follow a travel

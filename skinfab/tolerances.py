@@ -66,6 +66,10 @@ LEAST_BEAD_MM = 0.05
 #: rounding could turn its end behind its start and so make a full circle of it.
 SHORT_ARC_MM = 0.01
 
+#: Rounding places to 0.0001 mm changes the flow along a bead by less than this share where it is longer than
+#: 0.01 mm; along a shorter one, or where rounding left out the shape before it, the head is slowed down to keep it.
+GRID_FLOW_FRACTION = 0.02
+
 #: A point this far (barycentric) outside a flat triangle still lies in it: rounding must open no gap between neighbours.
 BARYCENTRIC = 1e-9
 

@@ -194,7 +194,7 @@ def test_ink_before_a_path_keeps_off_what_is_printed_later(
             elif isinstance(step, Extrude):
                 shapes[pattern].append(step.shape.segment)
         apart = distance(Curves.of_segments(shapes["A"]), Curves.of_segments(shapes["B"]))
-        assert apart >= material.ink.bead_width + material.gap - 1e-4
+        assert apart >= material.ink.bead_width + material.gap - 1e-4, dx
 
 
 def test_travel_never_crosses_wet_ink_at_print_height(make_piece: Callable, printer: Printer, material: Material) -> None:
