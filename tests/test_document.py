@@ -1,8 +1,10 @@
 """The skin document: save(load) is the identity, the bytes are the same every time, and bad files are refused in one line."""
 
+import dataclasses
 import io
 import json
 import math
+import re
 import subprocess
 import sys
 import tempfile
@@ -58,6 +60,8 @@ def assert_same(one: Skin, two: Skin) -> None:
     for field in ("source", "sensors", "printer", "material", "max_distortion", "seed"):
         assert getattr(one, field) == getattr(two, field)
     assert one.mesh.name == two.mesh.name
+    np.testing.assert_array_equal(one.object.V, two.object.V)
+    assert (one.thickness, one.neutral, one.flattened_at) == (two.thickness, two.neutral, two.flattened_at)
 
 
 patterns = st.one_of(
@@ -140,6 +144,59 @@ def test_a_repacked_document_still_opens(saved: Path) -> None:
     before = load_skin(saved)
     rewrite(saved, lambda name, content: content, method=zipfile.ZIP_DEFLATED)
     assert_same(load_skin(saved), before)
+
+
+def thick_skin(**changes: object) -> Skin:
+    """The grid flattened for a skin of 2.5 mm: the object itself lies lower."""
+    skin = grid_skin(thickness=2.5, **changes)
+    return dataclasses.replace(skin, object_V=skin.mesh.V - [0, 0, 2.5 * skin.neutral])
+
+
+def test_a_thickness_is_kept_byte_for_byte(tmp_path: Path) -> None:
+    skin = thick_skin(neutral=1 / 3)
+    save_skin(skin, tmp_path / "a.skin")
+    again = load_skin(tmp_path / "a.skin")
+    assert_same(skin, again)
+    assert again.object.V[0, 2] < again.mesh.V[0, 2] and again.flattened_at == skin.flattened_at == pytest.approx(2.5 / 3)
+    save_skin(again, tmp_path / "b.skin")
+    assert (tmp_path / "a.skin").read_bytes() == (tmp_path / "b.skin").read_bytes()
+
+
+def test_documents_that_know_no_thickness_open(tmp_path: Path) -> None:
+    """What releases before thickness wrote is what is written without one."""
+    save_skin(grid_skin(), tmp_path / "old.skin")
+    with zipfile.ZipFile(tmp_path / "old.skin") as archive:
+        assert "thickness" not in json.loads(archive.read("skin.json")) and "object/V.npy" not in archive.namelist()
+    old = load_skin(tmp_path / "old.skin")
+    assert (old.thickness, old.neutral, old.flattened_at) == (0, 0.5, 0) and old.object is old.mesh
+
+
+@pytest.mark.parametrize(
+    ("entry", "says"),
+    [
+        ({"thickness_mm": -1.0, "neutral": 0.5}, "-1 mm with neutral 0.5; they must be 0 or more, and from 0 to 1"),
+        ({"thickness_mm": 2.5, "neutral": 1.5}, "neutral 1.5"),
+        ({"thickness_mm": 2.5}, "neutral is missing"),
+        ({"thickness_mm": "2.5", "neutral": 0.5}, "must be a float"),
+        (2.5, "must be a dict"),
+    ],
+)
+def test_a_thickness_that_makes_no_sense(entry: object, says: str, tmp_path: Path) -> None:
+    save_skin(thick_skin(), tmp_path / "a.skin")
+
+    def change(name: str, content: bytes) -> bytes:
+        return json.dumps(json.loads(content) | {"thickness": entry}).encode() if name == "skin.json" else content
+
+    rewrite(tmp_path / "a.skin", change)
+    with pytest.raises(InputError, match=re.escape(says)):
+        load_skin(tmp_path / "a.skin")
+
+
+def test_a_thickness_without_the_object(tmp_path: Path) -> None:
+    save_skin(thick_skin(), tmp_path / "a.skin")
+    rewrite(tmp_path / "a.skin", lambda name, content: None if name == "object/V.npy" else content)
+    with pytest.raises(InputError, match="object/V"):
+        load_skin(tmp_path / "a.skin")
 
 
 @pytest.mark.parametrize(

@@ -94,6 +94,7 @@ def add_cut_options(p: argparse.ArgumentParser) -> None:
     p.add_argument("--complete", action="store_true", help="with --cuts: add automatic seams where those do not give good pieces")
     p.add_argument("--max-distortion", type=bound, default=4.05, metavar="D", help="mean d of a piece at most (default 4.05; 4 is perfect)")
     p.add_argument("--printer", metavar="NAME|FILE", help="printer profile, whose bed the pieces must fit")
+    p.add_argument("--material", metavar="NAME|FILE.toml", help="material profile: ink, silicone, mould (see skinfab strips)")
     p.add_argument("--seed", type=seed, default=0, help="kept in the document; the same seed gives the same result")
 
 
@@ -155,15 +156,14 @@ class Profiles:
     material: Material
 
 
-def profiles(printer: str | None = None, material: str = "carbon-grease-ecoflex") -> Profiles:
-    """Load the profiles; a printer's own file is named by its absolute path, so that the document finds it again."""
+def profiles(printer: str | None = None, material: str | None = None) -> Profiles:
+    """Load the profiles; a file of one's own is named by its absolute path, so that the document finds it again."""
     from gcode.printer import DEFAULT_PRINTER, load_printer
-    from skinfab.material import load_material
+    from skinfab.material import DEFAULT_MATERIAL, load_material
 
-    name = printer or DEFAULT_PRINTER
-    if name.endswith(".toml"):
-        name = str(Path(name).resolve())
-    return Profiles(name, load_printer(name), material, load_material(material))
+    names = (printer or DEFAULT_PRINTER, material or DEFAULT_MATERIAL)
+    name, inks = (str(Path(each).resolve()) if each.endswith(".toml") else each for each in names)
+    return Profiles(name, load_printer(name), inks, load_material(inks))
 
 
 def limits(max_distortion: float, used: Profiles) -> Limits:
@@ -202,6 +202,8 @@ def surface(args: argparse.Namespace, mesh: Mesh, *, usual: float = 0.0) -> Surf
     remarks = offset.remarks
     if usual and thickness and thickness != usual:
         remarks += (f"flattened for a skin {thickness:g} mm thick, but the material profile pours {usual:g} mm; change one of them",)
+    if offset.mesh is mesh and args.neutral:
+        thickness = 0.0  # as far as the document is concerned, it was flattened without
     return Surface(offset.mesh, thickness, args.neutral, remarks)
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
+from scipy.spatial import cKDTree
 
 from skinfab.errors import InputError
 from skinfab.mesh.model import Mesh
@@ -19,6 +20,10 @@ BoolArray = NDArray[np.bool_]
 _EVEN_ROUNDS = 12
 #: Neighbourhoods that a round of evening out reaches at most, in rings of triangles.
 _RINGS = 3
+#: ... and no farther from a fold than this many times the offset: long triangles carry it across the whole object otherwise.
+_REACH = 4.0
+#: Where more of the surface than this would have to be rounded off, the offset is given up.
+_MOST_ROUNDED = 0.5
 #: A round draws the vertices of folded triangles in by this factor.
 _DRAW_IN = 0.7
 #: Then folds are gone everywhere, or the offset is under a thousandth there (0.7^20) and put to nothing.
@@ -76,7 +81,7 @@ def offset_mesh(mesh: Mesh, distance: float, *, round_off: bool = False) -> Offs
         0 or more.
     round_off : bool
         Where the surface would fold (concave places tighter than `distance`), even the steps of neighbouring vertices out
-        until it does not, and say so, instead of refusing.
+        until it does not, and say so, instead of refusing. Where that would be most of the surface, it stays the object's own.
 
     Raises
     ------
@@ -101,29 +106,32 @@ def offset_mesh(mesh: Mesh, distance: float, *, round_off: bool = False) -> Offs
     step = outward_steps(mesh)
     wanted = mesh.V + distance * step
     folded = folds(mesh, wanted)
-    if not folded.any():
-        even, V = step, wanted
-    elif round_off:
+    even, V = step, wanted
+    if folded.any() and round_off:
         even = _without_folds(mesh, step, distance)
         V = mesh.V + distance * even
-    else:
+        if (share := _share(mesh, _is_rounded(step, even))) > _MOST_ROUNDED:
+            return Offset(mesh, (_given_up(folded, share, distance),))
+    elif folded.any():
         raise OffsetError(
             f"the surface {distance:.3g} mm outside the object folds over at {_count(folded)}, {_place(mesh, folded)}: something there "
             "is more tightly hollow; open it on the object",
             largest=_largest(mesh, step, distance),
         )
-    remarks = [_rounded_off(mesh, folded, step, even, distance)] if folded.any() else []
+    remarks = [_rounded_off(mesh, folded, step, even, distance)] if even is not step else []
     # Where it was rounded off it is nearer for that reason, which is said already.
     meeting = _meets_itself(mesh, V, distance) & (np.abs(even - step).max(axis=1) == 0)
     if meeting.any():
         where = _near(mesh.V[np.argmax(meeting)])
-        share = _share_of_area(mesh, meeting)
+        share = _share(mesh, meeting)
         if not round_off:
             raise OffsetError(
                 f"the surface {distance:.3g} mm outside the object passes through itself {where}, where two sides face each other; "
                 "widen the gap there"
             )
-        remarks.append(f"two sides of the object face each other so closely {where} that their skins press on each other ({share})")
+        remarks.append(
+            f"two sides of the object face each other so closely {where} that their skins press on each other ({_in_words(share)})"
+        )
     return Offset(Mesh(V, mesh.F, mesh.name), tuple(remarks))
 
 
@@ -158,10 +166,14 @@ def outward_steps(mesh: Mesh) -> FloatArray:
 
 
 def folds(mesh: Mesh, V: FloatArray) -> BoolArray:
-    """Faces of which, moved to the vertices `V`, hardly anything is left or the back is seen, (m,)."""
-    p = V[mesh.F]
-    left = np.einsum("ij,ij->i", np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]), mesh.face_normals)
-    folded: BoolArray = left < OFFSET_LEAST_AREA * 2 * mesh.face_areas
+    """Faces of which, moved to the vertices `V`, hardly anything is left, or that are turned over once or both ways, (m,)."""
+    p, q = mesh.V[mesh.F], V[mesh.F]
+    a, b, c, d = p[:, 1] - p[:, 0], p[:, 2] - p[:, 0], q[:, 1] - q[:, 0], q[:, 2] - q[:, 0]
+    left = np.einsum("ij,ij->i", np.cross(c, d), mesh.face_normals)
+    # The inside of a ball smaller than the offset comes out with its front in front, but turned by half a circle: the trace of
+    # the map from the old face to the new one is negative.
+    trace = np.einsum("ij,ij->i", np.cross(b, mesh.face_normals), c) + np.einsum("ij,ij->i", np.cross(mesh.face_normals, a), d)
+    folded: BoolArray = (left < OFFSET_LEAST_AREA * 2 * mesh.face_areas) | (trace < 0)
     return folded
 
 
@@ -184,14 +196,18 @@ def _without_folds(mesh: Mesh, step: FloatArray, distance: float) -> FloatArray:
     neighbours = csr_array((ones, (np.concatenate([E[:, 0], E[:, 1]]), np.concatenate([E[:, 1], E[:, 0]]))), shape=(n, n))
     degree = np.maximum(np.bincount(E.ravel(), minlength=n), 1)
     step = step.copy()
+    within = None
     for k in range(_EVEN_ROUNDS):
         folded = folds(mesh, mesh.V + distance * step)
         if not folded.any():
             return step
         near = _corners(mesh, folded)
+        if within is None:
+            away, _ = cKDTree(mesh.V[near]).query(mesh.V, distance_upper_bound=_REACH * distance)
+            within = np.isfinite(away)
         for _ in range(min(1 + k // 4, _RINGS)):
             near = _corners(mesh, np.asarray(near[mesh.F].any(axis=1)))
-        at = np.flatnonzero(near)
+        at = np.flatnonzero(near & within)
         around, by = neighbours[at], degree[at][:, None]
         # Half a step of Jacobi at a time: it settles on any mesh.
         for _ in range(3 + k):
@@ -238,13 +254,24 @@ def _meets_itself(mesh: Mesh, V: FloatArray, distance: float) -> BoolArray:
 
 
 def _rounded_off(mesh: Mesh, folded: BoolArray, step: FloatArray, even: FloatArray, distance: float) -> str:
-    moved = np.linalg.norm(even - step, axis=1) > 1 - OFFSET_NEAR
-    length = np.linalg.norm(even, axis=1)
+    length, share = np.linalg.norm(even, axis=1), _share(mesh, _is_rounded(step, even))
     least = float(min(length[_corners(mesh, folded)].min() * distance, distance))
     return (
         f"the skin's neutral surface, {distance:.3g} mm outside the object, would fold over at {_count(folded)}, "
-        f"{_place(mesh, folded)}; it is rounded off there ({_share_of_area(mesh, moved)}), down to {least:.2g} mm outside"
+        f"{_place(mesh, folded)}; it is rounded off there ({_in_words(share)}), down to {least:.2g} mm outside"
     )
+
+
+def _given_up(folded: BoolArray, share: float, distance: float) -> str:
+    return (
+        f"the skin's neutral surface, {distance:.3g} mm outside the object, would fold over at {_count(folded)} ({_in_words(share)}), so "
+        "the object's own surface was flattened: the skin will be stretched on; a model without its fine grooves would do better"
+    )
+
+
+def _is_rounded(step: FloatArray, even: FloatArray) -> BoolArray:
+    rounded: BoolArray = np.linalg.norm(even - step, axis=1) > 1 - OFFSET_NEAR
+    return rounded
 
 
 def _place(mesh: Mesh, folded: BoolArray) -> str:
@@ -262,9 +289,12 @@ def _count(folded: BoolArray) -> str:
     return f"{number} triangle" + ("" if number == 1 else "s")
 
 
-def _share_of_area(mesh: Mesh, vertices: BoolArray) -> str:
-    """Part of the surface about these vertices, in words."""
-    share = 100 * float(mesh.face_areas @ vertices[mesh.F].mean(axis=1)) / mesh.area
-    if share < 0.01:
+def _share(mesh: Mesh, vertices: BoolArray) -> float:
+    """Part of the surface about these vertices."""
+    return float(mesh.face_areas @ vertices[mesh.F].mean(axis=1)) / mesh.area
+
+
+def _in_words(share: float) -> str:
+    if share < 1e-4:
         return "less than 0.01 % of the surface"
-    return f"{share:.0f} % of the surface" if share >= 10 else f"{share:.2g} % of the surface"
+    return f"{100 * share:.0f} % of the surface" if share >= 0.1 else f"{100 * share:.2g} % of the surface"

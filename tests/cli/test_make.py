@@ -60,6 +60,21 @@ def test_as_flat_as_published(made: tuple[str, Path, dict]) -> None:
     assert results.overlap(UV, FT) < 1e-6
 
 
+def test_the_skin_closes_without_being_stretched(made: tuple[str, Path, dict]) -> None:
+    """Half of the 2.5 mm of skin lies outside: the middle of the skin is what was flattened, and is not stretched on."""
+    name, folder, report = made
+    assert report["made_for"]["flattened_at_mm"] == 1.25 and report["made_for"]["conductor_mm"] == 1.6
+    V, *_ = results.read_flat_obj(folder / "flat.obj")
+    low, high = np.array(report["mesh"]["bbox_mm"])  # of the object
+    if name in ("cube", "cylinder"):
+        assert np.array([V.min(axis=0), V.max(axis=0)]) == pytest.approx(np.array([low - 1.25, high + 1.25]), abs=1e-6)
+    for strain in (s["wrap_strain"] for s in report["sensors"]):
+        assert strain["mean"] == pytest.approx(strain["membrane"]["mean"] + strain["bending"]["mean"], abs=1e-12)
+        if name in ("cube", "cylinder", "dodecahedron"):
+            assert strain["membrane"]["max"] == pytest.approx(0, abs=1e-4)
+        assert abs(strain["membrane"]["mean"]) < 0.03
+
+
 def test_every_piece_has_a_sensor_or_a_reason(made: tuple[str, Path, dict]) -> None:
     _, _, report = made
     with_sensor = {s["piece"] for s in report["sensors"]}

@@ -1,6 +1,7 @@
 """Where an offset surface fails: each test first shows the plain one fold, then what is done instead."""
 
 import re
+from argparse import Namespace
 from pathlib import Path
 
 import numpy as np
@@ -8,6 +9,8 @@ import pytest
 import shapes
 
 from skinfab.cli.main import main
+from skinfab.cli.steps import surface
+from skinfab.errors import InputError
 from skinfab.mesh.model import Mesh
 from skinfab.mesh.offset import OffsetError, folds, offset_mesh, outward_steps
 from skinfab.tolerances import OFFSET_MITRE
@@ -18,13 +21,14 @@ H = 1.25
 
 def groove(width: float, depth: float = 5.0) -> Mesh:
     """A plate with a groove across it: its walls face each other."""
-    profile = np.array([[-20, 0], [-width / 2, 0], [-width / 2, -depth], [width / 2, -depth], [width / 2, 0], [20, 0]], float)
+    left = [[-20, 0], [-12, 0], [-6, 0], [-width / 2, 0], [-width / 2, -depth]]
+    profile = np.array([*left, *([-x, z] for x, z in reversed(left))], float)
 
     def place(s, t):
-        k = np.rint(s * 5).astype(int)
+        k = np.rint(s * 9).astype(int)
         return np.column_stack([profile[k, 0], 30 * t, profile[k, 1]])
 
-    return Mesh(*shapes.grid(5, 12, place))
+    return Mesh(*shapes.grid(9, 12, place))
 
 
 def dimple(radius: float) -> Mesh:
@@ -39,7 +43,7 @@ def slit(gap: float) -> Mesh:
     return Mesh(np.vstack([V * 20, V * 20 + [0, 0, gap]]), np.vstack([F, F[:, ::-1] + len(V)]))
 
 
-@pytest.mark.parametrize("mesh", [groove(2.0), groove(0.5, depth=1.0), dimple(1.0)], ids=["groove", "scratch", "dimple"])
+@pytest.mark.parametrize("mesh", [groove(2.0), groove(0.5, depth=1.0)], ids=["groove", "scratch"])
 def test_a_place_tighter_than_the_offset(mesh: Mesh) -> None:
     plain = mesh.V + H * outward_steps(mesh)
     assert folds(mesh, plain).any()
@@ -53,6 +57,16 @@ def test_a_place_tighter_than_the_offset(mesh: Mesh) -> None:
     assert not folds(mesh, offset.mesh.V).any()
     (remark,) = offset.remarks
     assert "would fold over" in remark and "rounded off" in remark
+
+
+def test_nothing_but_a_tight_place() -> None:
+    """Inside a ball smaller than the offset every triangle is turned over: there is no such surface, and none is made up."""
+    mesh = dimple(1.0)
+    assert folds(mesh, mesh.V + H * outward_steps(mesh)).all()
+    offset = offset_mesh(mesh, H, round_off=True)
+    assert offset.mesh is mesh
+    (remark,) = offset.remarks
+    assert "so the object's own surface was flattened" in remark
 
 
 def test_only_the_tight_place_is_rounded_off() -> None:
@@ -116,3 +130,23 @@ def test_make_goes_on_where_the_others_refuse(tmp_path: Path, capfd: pytest.Capt
     assert main(["make", cup, "-o", str(tmp_path / "out")]) == 0
     said = capfd.readouterr().err
     assert said.count("rounded off") == 1
+
+
+def asked(thickness: float | None) -> Namespace:
+    return Namespace(thickness=thickness, neutral=0.5)
+
+
+def test_a_given_up_offset_is_a_skin_without_thickness() -> None:
+    mesh = dimple(1.0)
+    found = surface(asked(None), mesh, usual=2.5)
+    assert found.mesh is mesh and found.thickness == 0 and "stretched on" in found.remarks[0]
+    with pytest.raises(InputError, match=r"--thickness 2\.5: .*, give --thickness 1\.\d\d or less, or leave it to skinfab make"):
+        surface(asked(2.5), mesh, usual=2.5)
+
+
+def test_a_thickness_that_is_not_poured_is_said() -> None:
+    mesh = shapes.object_mesh("cube")
+    assert surface(asked(2.5), mesh, usual=2.5).remarks == () == surface(asked(0.0), mesh, usual=2.5).remarks
+    (remark,) = surface(asked(3.0), mesh, usual=2.5).remarks
+    assert "3 mm thick" in remark and "pours 2.5 mm" in remark
+    assert surface(asked(3.0), mesh).remarks == ()  # segment knows of no profile's layers
