@@ -139,6 +139,11 @@ class Pattern(ABC):
         value = getattr(self, name)
         if not value >= bound - PARAMETER_ROUNDING_MM:
             nearest = _on_step(bound, up=True)
+            if nearest > LARGEST_PATTERN_MM:
+                raise InputError(
+                    f"{self.kind}: {name} would have to be at least {_shown(nearest)} ({why}), and no bed is larger than "
+                    f"{_shown(LARGEST_PATTERN_MM)} mm; make the other parameters smaller"
+                )
             raise PatternError(self.kind, name, value, f"it must be at least {_shown(nearest)} ({why})", nearest)
 
     def _at_most(self, name: str, bound: float, why: str) -> None:
