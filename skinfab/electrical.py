@@ -16,7 +16,7 @@ from skinfab.material import Ink
 #: Standard normal quantile of 95 %.
 _Z95 = 1.6448536269514722
 #: Millimetres in a centimetre and ohms in a kilohm: ohm cm = 0.01 kohm mm.
-_KOHM_MM_PER_OHM_CM = 0.01
+KOHM_MM_PER_OHM_CM = 0.01
 
 
 @dataclass(frozen=True)
@@ -67,7 +67,7 @@ def resistance(length: float, ink: Ink) -> Resistance:
         raise InputError(f"a conductor of length {length:g} mm has no resistance; it must be longer than 0")
     if not ink.bead_area_mm2 > 0:
         raise InputError(f"ink {ink.name}: bead_area_mm2 is {ink.bead_area_mm2:g}; it must be more than 0")
-    line = _KOHM_MM_PER_OHM_CM * ink.resistivity_ohm_cm * length / ink.conducting_area_mm2
+    line = KOHM_MM_PER_OHM_CM * ink.resistivity_ohm_cm * length / ink.conducting_area_mm2
     median = line + 2 * ink.contact_resistance_kohm
     spread = math.exp(_Z95 * ink.log_sigma)
     return Resistance(low=median / spread, median=median, high=median * spread)

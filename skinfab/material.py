@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import json
 import tomllib
+from collections.abc import Sequence
 from dataclasses import MISSING, dataclass, fields
 from importlib import resources
 from pathlib import Path
 from typing import Any
 
 from skinfab.errors import InputError
+
+#: The bundled profile of the paper's process.
+DEFAULT_MATERIAL = "carbon-grease-ecoflex"
 
 
 @dataclass(frozen=True)
@@ -74,7 +79,7 @@ class Material:
         return sum(layer.depth for layer in self.layers)
 
 
-def load_material(name: str | Path = "carbon-grease-ecoflex") -> Material:
+def load_material(name: str | Path = DEFAULT_MATERIAL) -> Material:
     """Read a bundled profile by name, or any TOML file by path.
 
     Raises
@@ -123,3 +128,28 @@ def _build(kind: type, data: dict[str, Any], where: str) -> Any:
                 raise InputError(f"{where}: {key} is {values[key]!r}; it must be a number, zero or more")
             values[key] = float(values[key])
     return kind(**values)
+
+
+def material_toml(material: Material, *, comments: Sequence[str] = ()) -> str:
+    """The profile as the text of a TOML file that `load_material` reads as the same material.
+
+    Examples
+    --------
+    >>> print(material_toml(load_material(), comments=["as bundled"])[:70])
+    # as bundled
+    name = "carbon grease 846-1P in Ecoflex 00-30"
+    margin = 1.0
+    """
+    lines = [f"# {' '.join(comment.split())}" for comment in comments]
+    lines += [f"{key} = {_toml(value)}" for key, value in vars(material).items() if isinstance(value, str | float)]
+    lines += ["", "[ink]", *(f"{key} = {_toml(value)}" for key, value in vars(material.ink).items())]
+    for layer in material.layers:
+        lines += ["", "[[layers]]", *(f"{key} = {_toml(value)}" for key, value in vars(layer).items())]
+    return "\n".join([*lines, "", "[mould]", *(f"{key} = {_toml(value)}" for key, value in vars(material.mould).items()), ""])
+
+
+def _toml(value: str | float | dict[str, float]) -> str:
+    if isinstance(value, dict):
+        return "{ " + ", ".join(f"{_toml(key)} = {_toml(each)}" for key, each in value.items()) + " }"
+    # A JSON string is a TOML string but for the one control character that JSON lets stand.
+    return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f") if isinstance(value, str) else repr(value)

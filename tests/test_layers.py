@@ -22,11 +22,11 @@ ALLOWED = {
 FLOORS = (
     ("errors", "tolerances", "__init__"),
     ("files", "decimals", "linalg", "paths", "material", "progress", "staging", "archive"),
-    ("mesh", "patterns", "electrical"),
+    ("mesh", "patterns", "electrical", "strip_fit"),
     ("pieces", "flatten"),
     ("seams", "placement"),
     ("skin",),
-    ("document", "mould", "mould_plan", "mould_taper", "wiring", "wire_exits", "recipe", "work_order", "drawings", "report"),
+    ("document", "mould", "mould_plan", "mould_taper", "strip_plate", "wiring", "wire_exits", "recipe", "work_order", "drawings", "report"),
     ("cli", "bench", "__main__"),
 )
 FLOOR_OF = {room: k for k, rooms in enumerate(FLOORS) for room in rooms}

@@ -184,16 +184,17 @@ def test_lips_hold_their_volume_beside_leaning_walls() -> None:
 
 
 def test_a_jagged_outline_keeps_its_volume() -> None:
-    # Spikes gain more by a lean outwards than they lose inwards: leaning about the outline itself holds 0.6 % too much.
-    angle = np.linspace(0, 2 * np.pi, 60, endpoint=False)
-    radius = 6 + 4.0 * (np.arange(60) % 2)
+    # Spikes gain more by a lean outwards than they lose inwards: leaning about the outline itself holds 1.4 % too much.
+    angle = np.linspace(0, 2 * np.pi, 16, endpoint=False)
+    radius = 2 + 4.0 * (np.arange(16) % 2)
     piece = piece_from_outline(radius[:, None] * np.c_[np.cos(angle), np.sin(angle)])
     cavity, h = cavity_region(piece), 1.25 * np.tan(np.radians(10))
     naive = sum(w * cavity.buffer(by, join_style="mitre").area for w, by in ((1, -h), (4, 0), (1, h))) / 6
     assert naive > 1.005 * piece.area
     leaning = replace(MATERIAL, mould=replace(MATERIAL.mould, draft_deg=10.0))
     mould = casting_mould(piece, material=leaning)
-    assert mould.warnings == () and mould.cavity_ml * 1000 == pytest.approx(piece.area * 2.5, rel=0.002)
+    assert not any("upright" in note for note in mould.warnings)
+    assert mould.cavity_ml * 1000 == pytest.approx(piece.area * 2.5, rel=0.002)
 
 
 def test_a_sliver_gets_upright_walls_and_says_so() -> None:

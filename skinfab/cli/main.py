@@ -29,6 +29,7 @@ COMMANDS = {
     "place": "put sensors on the flat pieces",
     "mould": "casting moulds for the flat pieces",
     "gcode": "G-code for the sensors, or check a G-code file",
+    "strips": "calibration strips for the ink: print them, then fit what was measured",
     "bench": "measure the project beside its peers: time against distortion",
 }
 

@@ -130,7 +130,7 @@ def _cut_mesh(args: argparse.Namespace, watch: Stopwatch, progress: Progress) ->
     """Read a mesh, cut and flatten it."""
     from skinfab.progress import part_of
 
-    used = steps.profiles(args.printer)
+    used = steps.profiles(args.printer, args.material)
     progress(0.0, "reading")
     with watch.phase("load"):
         loaded = steps.load(args)
@@ -153,8 +153,8 @@ def _document(args: argparse.Namespace, watch: Stopwatch, progress: Progress) ->
     progress(0.0, "reading")
     with watch.phase("load"):
         skin = load_skin(args.mesh)
-        used = steps.profiles(args.printer or skin.printer, skin.material)
-        skin = replace(skin, printer=used.printer_name)
+        used = steps.profiles(args.printer or skin.printer, args.material or skin.material)
+        skin = replace(skin, printer=used.printer_name, material=used.material_name)
     with watch.phase("flatten"):
         distortions = [measure(p.V(skin.mesh), p.F, p.UV, topology=p.topology) for p in skin.pieces]
     return skin, distortions, used, ()

@@ -34,7 +34,7 @@ def run(args: argparse.Namespace) -> int:
 
     loaded = steps.load(args)
     flattened = steps.surface(args, loaded.mesh)
-    used = steps.profiles(args.printer)
+    used = steps.profiles(args.printer, args.material)
     with terminal_progress(quiet=args.json) as progress:
         seams = steps.cut(args, loaded, flattened.mesh, used, progress)
     skin, distortions = steps.to_skin(loaded, flattened, seams, used=used, max_distortion=args.max_distortion, seed=args.seed)
