@@ -74,7 +74,7 @@ class ContactSpiral(Pattern):
         if fitting < 1:
             self._at_least("s", 2 * (2 * self.x + self.pitch_min / 2), f"one half-turn at x = {self.x:g}")
         if self.n > fitting:
-            bound = f"at s = {self.s:g} and x = {self.x:g} no more than {fitting} half-turns fit"
+            bound = f"at s = {self.s:g} and x = {self.x:g} no more than {fitting} half-turn{'s fit' if fitting > 1 else ' fits'}"
             raise PatternError(self.kind, "n", self.n, bound, fitting)
         self._at_most("b", self.s - 2 * self.x, "the upper lead must meet the outer turn: s - 2 x")
 

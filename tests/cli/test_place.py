@@ -166,3 +166,19 @@ def test_every_pattern_is_listed(capsys: pytest.CaptureFixture[str]) -> None:
         assert re.search(rf"^{kind} \({cls.senses}\): ", said, re.M)
         for name in cls.example:
             assert re.search(rf"^  {name} +[A-Z]", said, re.M)
+
+
+def test_the_user_guides_changes(document: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    guide = (ROOT / "docs/sensors.md").read_text(encoding="utf-8")
+    assert main(["place", str(document)]) == 0
+    before = {s.id: s for s in load_skin(document).sensors}
+    monkeypatch.chdir(document.parent)
+    document.rename("skin.skin")
+    (program,) = re.findall(r"```python\n(.*?)```", guide, re.S)
+    exec(compile(program, "docs/sensors.md", "exec"), {})
+    after = {s.id: s for s in load_skin("skin.skin").sensors}
+    assert (after["C1"].x - before["C1"].x, after["C2"].pattern.n) == (pytest.approx(0.2), 2)
+    (command,) = re.findall(r"^skinfab (place skin.skin .*)$", guide, re.M)
+    assert main(command.split()) == 0
+    left = {s.id: s for s in load_skin("skin.skin").sensors}
+    assert "C3" not in left and left["C2"].pattern.s == 30

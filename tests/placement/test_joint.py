@@ -1,5 +1,6 @@
 """Strain sensors across a joint that is named, and sensors on a side that is named."""
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -66,6 +67,13 @@ def test_it_crosses_the_joint_on_its_finger(tmp_path: Path, pattern: str, joint:
     assert abs(on_object(sensor)[0, 0] - joint[0]) <= 0.25 * sensor.pattern.span
     # Its lines run up the finger, which is y on the flat piece.
     assert abs(np.sin(sensor.angle)) > np.cos(np.deg2rad(11))
+
+
+def test_the_example_of_the_user_guide(tmp_path: Path) -> None:
+    guide = (Path(__file__).parents[2] / "docs/sensors.md").read_text(encoding="utf-8")
+    (text,) = (block for block in re.findall(r"```toml\n(.*?)```", guide, re.S) if "joint" in block)
+    place, normal = on_object(placed(tmp_path, text.removeprefix("[[sensor]]\n")))
+    assert abs(place[0] - 45) <= 6 and normal[2] >= np.cos(np.deg2rad(45 + 180 / 48))
 
 
 @pytest.mark.parametrize("facing", [[0, 0, 1], [0, 1, 0], [0, -1, 1]])

@@ -231,7 +231,7 @@ def test_what_would_cross_itself_is_refused(free: type[Pattern], checked: type[P
 def test_a_turn_without_a_radius_is_refused_in_the_patterns_words(params: dict) -> None:
     with pytest.raises(PathError, match=r"^arc radius is -?\d+ mm"):
         _FreeSpiral(**params).path()
-    with pytest.raises(PatternError, match=r"no more than \d half-turns fit; the nearest value that works is \d$"):
+    with pytest.raises(PatternError, match=r"no more than \d half-turns? fits?; the nearest value that works is \d$"):
         ContactSpiral(**params)
 
 
