@@ -9,11 +9,15 @@ from pathlib import Path
 
 from skinfab.cli import steps
 
-#: What can be measured; `skinfab/bench/NAME.py` holds its `run`.
+#: What can be measured.
 NAMES = {
     "flatten": "time against distortion of the ways to flatten a disk",
     "simplify": "triangles solved for against distortion and time",
+    "gcode": "arcs and chord tolerances against file size, deviation and time",
 }
+
+#: Where its `run` is, and whether it takes --sizes.
+MODULES = {"flatten": ("skinfab.bench.flatten", True), "simplify": ("skinfab.bench.simplify", True), "gcode": ("gcode.bench", False)}
 
 
 def name(text: str) -> str:
@@ -64,13 +68,16 @@ def run(args: argparse.Namespace) -> int:
     from skinfab.staging import staged_folder
 
     wanted = list(dict.fromkeys(args.names or NAMES))
-    options = {"repeats": args.repeats, **({"sizes": args.sizes} if args.sizes else {})}
+    if args.sizes and not any(MODULES[key][1] for key in wanted):
+        args.wrong_usage(f"--sizes counts triangles, and {', '.join(wanted)} has none")
     found = {}
     with staged_folder(args.output) as folder:
         with terminal_progress(quiet=args.json) as progress:
             for k, key in enumerate(wanted):
                 part = part_of(progress, k / len(wanted), (k + 1) / len(wanted))
-                found[key] = importlib.import_module(f"skinfab.bench.{key}").run(folder, progress=part, **options)
+                module, sized = MODULES[key]
+                options = {"sizes": args.sizes} if sized and args.sizes else {}
+                found[key] = importlib.import_module(module).run(folder, repeats=args.repeats, progress=part, **options)
         written = [str(args.output / file.name) for file in sorted(folder.iterdir())]
     if args.json:
         print(json.dumps({"files": written, **found}, allow_nan=False))

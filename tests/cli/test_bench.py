@@ -23,15 +23,16 @@ def test_json_is_all_there_is_on_standard_output(tmp_path: Path, capsys: pytest.
 def test_the_sentence_is_printed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["bench", "-o", str(tmp_path), *SMALL]) == 0
     out = capsys.readouterr().out.splitlines()
-    assert out[:2] == [(tmp_path / f"{name}.txt").read_text().splitlines()[0] for name in ("flatten", "simplify")]
-    assert out[2].startswith("wrote ") and all(str(tmp_path / name) in out[2] for name in ("refine.png", "simplify.png"))
+    assert out[:3] == [(tmp_path / f"{name}.txt").read_text().splitlines()[0] for name in ("flatten", "simplify", "gcode")]
+    assert out[3].startswith("wrote ") and all(str(tmp_path / name) in out[3] for name in ("refine.png", "simplify.png", "gcode.png"))
 
 
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [
-        (["flaten"], "'flaten' is not measured; there are flatten, simplify"),
+        (["flaten"], "'flaten' is not measured; there are flatten, simplify, gcode"),
         (["--sizes", "300,x"], "'300,x' is not a list of numbers of triangles such as 5000,20000"),
+        (["gcode", "--sizes", "300"], "--sizes counts triangles, and gcode has none"),
         (["--repeats", "0"], "'0' is not a whole number from 1 up"),
     ],
 )
