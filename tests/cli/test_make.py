@@ -66,13 +66,19 @@ def test_the_skin_closes_without_being_stretched(made: tuple[str, Path, dict]) -
     assert report["made_for"]["flattened_at_mm"] == 1.25 and report["made_for"]["conductor_mm"] == 1.6
     V, *_ = results.read_flat_obj(folder / "flat.obj")
     low, high = np.array(report["mesh"]["bbox_mm"])  # of the object
-    if name in ("cube", "cylinder"):
-        assert np.array([V.min(axis=0), V.max(axis=0)]) == pytest.approx(np.array([low - 1.25, high + 1.25]), abs=1e-6)
+    # The cylinder's side is a polygon of 96 flat faces: it is they that move by 1.25 mm, its corners by a little more.
+    moved = {"cube": np.full(3, 1.25), "cylinder": 1.25 / np.cos([np.pi / 96, np.pi / 96, 0])}
+    if name in moved:
+        assert np.array([V.min(axis=0), V.max(axis=0)]) == pytest.approx(np.array([low - moved[name], high + moved[name]]), abs=1e-6)
     for strain in (s["wrap_strain"] for s in report["sensors"]):
         assert strain["mean"] == pytest.approx(strain["membrane"]["mean"] + strain["bending"]["mean"], abs=1e-12)
         if name in ("cube", "cylinder", "dodecahedron"):
             assert strain["membrane"]["max"] == pytest.approx(0, abs=1e-4)
-        assert abs(strain["membrane"]["mean"]) < 0.03
+    # What is left is the flattening's own, some places stretched and others squeezed.
+    membrane = np.average(
+        [s["wrap_strain"]["membrane"]["mean"] for s in report["sensors"]], weights=[s["length_mm"] for s in report["sensors"]]
+    )
+    assert abs(membrane) < 0.006
 
 
 def test_every_piece_has_a_sensor_or_a_reason(made: tuple[str, Path, dict]) -> None:
