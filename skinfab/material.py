@@ -72,6 +72,7 @@ class Material:
     ink: Ink
     layers: tuple[Layer, ...]
     mould: Mould
+    adhesive: str = ""  # what holds the skin on the object; empty where it is only worn
 
     @property
     def depth(self) -> float:
@@ -135,10 +136,8 @@ def material_toml(material: Material, *, comments: Sequence[str] = ()) -> str:
 
     Examples
     --------
-    >>> print(material_toml(load_material(), comments=["as bundled"])[:70])
-    # as bundled
-    name = "carbon grease 846-1P in Ecoflex 00-30"
-    margin = 1.0
+    >>> material_toml(load_material(), comments=["as bundled"]).splitlines()[:3]
+    ['# as bundled', 'name = "carbon grease 846-1P in Ecoflex 00-30"', 'margin = 1.0']
     """
     lines = [f"# {' '.join(comment.split())}" for comment in comments]
     lines += [f"{key} = {_toml(value)}" for key, value in vars(material).items() if isinstance(value, str | float)]

@@ -77,7 +77,7 @@ def work_steps(recipe: Recipe, material: Material, *, jobs: Sequence[PrintJob] =
     >>> from skinfab.recipe import recipe
     >>> steps = work_steps(recipe({"P1": 10.0}, load_material()), load_material())
     >>> steps[0], steps[1][:36]
-    ('Print the mould of P1.', 'P1 has no sensors and is only cast, ')
+    ('Print the mould of P1, floor down and without supports.', 'P1 has no sensors and is only cast, ')
     """
     if home not in _HOMING:
         raise InputError(f"home is {home!r}; it must be one of {', '.join(_HOMING)}")
@@ -87,7 +87,7 @@ def work_steps(recipe: Recipe, material: Material, *, jobs: Sequence[PrintJob] =
             raise InputError(f"piece {job.piece} is printed but has no mould; cast {', '.join(pieces)} or make its mould too")
     printed = {job.piece for job in jobs}
     bare = [piece for piece in pieces if piece not in printed]
-    steps = [f"Print the mould{'s' * (len(pieces) > 1)} of {', '.join(pieces)}."]
+    steps = [f"Print the mould{'s' * (len(pieces) > 1)} of {', '.join(pieces)}, floor down and without supports."]
     if len(jobs) > 1:
         steps.append(
             f"Take the pieces with sensors one after the other ({', '.join(job.piece for job in jobs)}): all are printed at the same "
@@ -104,7 +104,7 @@ def work_steps(recipe: Recipe, material: Material, *, jobs: Sequence[PrintJob] =
             f"together with another piece, degas, pour and spread {layers}; "
             f"cure for {recipe.cure_h:g} h."
         )
-    return [*steps, *(_wire(job, recipe) for job in jobs if job.slots), *_finish(recipe)]
+    return [*steps, *(_wire(job, recipe) for job in jobs if job.slots), *_finish(recipe, material)]
 
 
 def _register(job: PrintJob, material: Material, home: str) -> list[str]:
@@ -123,7 +123,8 @@ def _register(job: PrintJob, material: Material, home: str) -> list[str]:
         f"{job.piece}: {_HOMING[home]}.",
         f"{job.piece}: lay the empty mould on the level bed so that its {corners}. Jog the nozzle to the lower left mark and move "
         "the mould under it; jog to the lower right mark and turn the mould until it "
-        "agrees; the upper left mark is the check. Then tape it down.",
+        "agrees; the upper left mark is the check. Then tape it down. (The sheet of flat.pdf, printed "
+        "at 100 % and laid under the glass with its marks at the same places, shows where the mould goes.)",
         f"{job.piece}: beside the mould, lower the nozzle until it holds a sheet of paper on the glass, and {set_z}. "
         "Raise the nozzle clear of the mould's wall.",
     ]
@@ -156,14 +157,16 @@ def _wire(job: PrintJob, recipe: Recipe) -> str:
     return (
         f"{job.piece}: once cured and still in the mould, pierce a stripped wire into each pad, lay it straight to its slot and out "
         f"through it: {slots} (wire by slot, x and y in mm from the piece's origin in flat.svg). "
-        f"Seal each pad with a drop of {recipe.bond}."
+        f"Seal each pad with a drop of {recipe.bond}. Measure each sensor between its two wires: wiring.csv of skinfab make has "
+        "the interval for nine prints in ten, and the board and input that each wire goes to."
     )
 
 
-def _finish(recipe: Recipe) -> list[str]:
+def _finish(recipe: Recipe, material: Material) -> list[str]:
+    glue = f" Where it must not slip, hold it on the object with {material.adhesive}." if material.adhesive else ""
     return [
         "Take the skin out of its moulds. Which side is out: the face that was up while pouring, the one that the drawing shows, is the "
         "OUTSIDE of the skin; the face that lay on the mould's floor goes onto the object.",
         "Wrap the skin round the object, seam by seam, equal numbers in flat.svg to each other; lay each lip over the outside of its other "
-        f"side and bond it with {recipe.bond}.",
+        f"side and bond it with {recipe.bond}.{glue}",
     ]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -97,3 +98,10 @@ def test_what_cannot_be() -> None:
         work_steps(WEIGHED, MATERIAL, jobs=JOBS, home="zyx")
     with pytest.raises(InputError, match="piece P9 is printed but has no mould"):
         work_steps(WEIGHED, MATERIAL, jobs=[PrintJob("P9", "P9.gcode")])
+
+
+def test_glued_where_the_profile_names_a_glue() -> None:
+    material = load_material()
+    assert work_steps(recipe({"P1": 10.0}, material), material)[-1].endswith("hold it on the object with silicone sealant DOWSIL 744.")
+    worn = replace(material, adhesive="")
+    assert work_steps(recipe({"P1": 10.0}, worn), worn)[-1].endswith(f"bond it with {material.bond}.")
