@@ -179,3 +179,25 @@ def test_fewer_than_asked_for_is_said(sheet: Callable) -> None:
 def test_spirals_of_the_papers_sizes_exist(s: float) -> None:
     p = spiral_of_size(s, MATERIAL)
     assert p.s == s and 1.7 <= p.x <= 3.2 and 1.5 <= p.b <= 8 and 3 <= p.l <= 8
+
+
+def test_whatever_is_placed_on_pieces_with_holes_is_valid(sheet: Callable) -> None:
+    # Two ways of judging: places are found on a raster and by moves, verdicts come from exact distances.
+    rng, placed = np.random.default_rng(7), 0
+    for _ in range(25):
+        width, height = rng.integers(20, 90, size=2)
+        middle, radius = rng.uniform((5, 5), (width - 5, height - 5)), rng.uniform(1, 8)
+        mesh, piece = sheet(
+            width,
+            height,
+            step=2.5,
+            without=lambda c, middle=middle, radius=radius: np.hypot(*(c - middle).T) < radius,
+            scale=rng.uniform(0.9, 1.1),
+        )
+        if len(piece.topology.boundary_loops) > 2:
+            continue  # the hole parts the piece
+        material = dataclasses.replace(MATERIAL, margin=float(rng.choice([0.0, 0.5, 2.0])))
+        sensors, _ = place(mesh, [piece], material=material, seed=3, options=AutoOptions(per_piece=int(rng.integers(1, 9))))
+        validate(SimpleNamespace(pieces=(piece,), sensors=sensors), material)
+        placed += len(sensors)
+    assert placed > 40
