@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -10,8 +11,10 @@ from gcode.check_wall import Wall, wall_of
 from gcode.emit import Arcs, emit, on_grid_of, with_chords
 from gcode.estimate import Summary, summarise
 from gcode.plan import Plan, plan
+from gcode.preview import draw_toolpath
 from gcode.printer import Printer, load_printer
 from gcode.program import Program
+from gcode.words import read_text
 from skinfab.errors import InputError, RefusedError, SkinfabError
 from skinfab.files import atomic_write, explain_os_error
 from skinfab.material import load_material
@@ -87,6 +90,25 @@ def write_skin(skin: Skin, folder: str | Path, *, arcs: Arcs | None = None, prin
         atomic_write(file, text)
         written.append(PieceGcode(planned.program.name, file, planned, summary))
     return tuple(written)
+
+
+def write_previews(skin: Skin, written: Sequence[PieceGcode], folder: str | Path, *, printer: Printer | None = None) -> tuple[Path, ...]:
+    """Write ``PIECE.svg`` for each file that `write_skin` wrote: its tool path, coloured by what the head does.
+
+    Raises
+    ------
+    InputError
+        A file cannot be read back or written.
+    """
+    printer = printer or load_printer(skin.printer)
+    pieces = {piece.id: piece for piece in skin.pieces}
+    targets = []
+    for w in written:
+        piece, target = pieces[w.piece], Path(folder) / f"{w.piece}.svg"
+        edges = piece.UV[piece.topology.E[piece.topology.is_boundary]]
+        draw_toolpath(read_text(w.file), target, printer=printer, title=f"Tool path of {w.piece}", outline=edges, shift=w.plan.offset)
+        targets.append(target)
+    return tuple(targets)
 
 
 def checked_text(program: Program, *, printer: Printer, arcs: Arcs = "native", wall: Wall | None = None) -> tuple[str, Summary]:

@@ -19,7 +19,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     p = subparsers.add_parser(
         "gcode",
         help="G-code for the sensors, or check a G-code file",
-        usage="skinfab gcode SKIN -o DIR [--arcs native|lines] [--printer NAME|FILE] [--json]\n"
+        usage="skinfab gcode SKIN -o DIR [--arcs native|lines] [--printer NAME|FILE] [--preview] [--json]\n"
         "       skinfab gcode check FILE [--printer NAME|FILE] [--json]",
         description="Write PIECE.gcode for every piece of a skin that carries sensors, or check any G-code file by the same rules.",
         epilog="A skin file that is itself named 'check' is given as ./check.",
@@ -28,6 +28,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     p.add_argument("-o", "--output", metavar="DIR", help="folder for the G-code files, made if it is not there")
     p.add_argument("--arcs", choices=("native", "lines"), help="arcs as G2 and G3, or as chords (default: what the printer draws)")
     p.add_argument("--printer", metavar="NAME|FILE", help="printer profile (default: the skin's own; for check: ender5plus-vipro)")
+    p.add_argument("--preview", action="store_true", help="write PIECE.svg too: the tool path, coloured by what the head does")
     p.add_argument("--json", action="store_true", help="print one JSON object and nothing else")
     p.set_defaults(run=run, wrong_usage=p.error)
 
@@ -45,14 +46,15 @@ def _write(args: argparse.Namespace) -> int:
     if args.output is None:
         args.wrong_usage("-o DIR is missing: the folder for the G-code files")
     from gcode.printer import load_printer
-    from gcode.write import write_skin
+    from gcode.write import write_previews, write_skin
     from skinfab.document import load_skin
 
     skin = load_skin(args.words[0])
     printer = load_printer(args.printer) if args.printer else None
     written = write_skin(skin, args.output, arcs=args.arcs, printer=printer)
+    previews = write_previews(skin, written, args.output, printer=printer) if args.preview else ()
     if args.json:
-        print(json.dumps({"gcode": [_described(w) for w in written]}))
+        print(json.dumps({"gcode": [_described(w) for w in written], "previews": [str(file) for file in previews]}))
         return 0
     for w in written:
         s = w.summary
@@ -61,6 +63,8 @@ def _write(args: argparse.Namespace) -> int:
         print(f"  the piece's lower left corner is at X{x:.4f} Y{y:.4f}")
         for warning in w.plan.warnings:
             print(f"  {warning}")
+    for file in previews:
+        print(f"{file}: its tool path")
     return 0
 
 
@@ -77,9 +81,9 @@ def _described(written: PieceGcode) -> dict[str, object]:
 def _check(args: argparse.Namespace) -> int:
     if len(args.words) != 2:
         args.wrong_usage("check takes one G-code file")
-    for name in ("output", "arcs"):
-        if getattr(args, name) is not None:
-            args.wrong_usage(f"check reads a file and writes none, so it takes no {'-o' if name == 'output' else '--arcs'}")
+    for option, given in (("-o", args.output), ("--arcs", args.arcs), ("--preview", args.preview or None)):
+        if given is not None:
+            args.wrong_usage(f"check reads a file and writes none, so it takes no {option}")
     from gcode.check import check_text
     from gcode.printer import DEFAULT_PRINTER, load_printer
     from gcode.words import read_text

@@ -31,7 +31,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "make",
         help="mesh in, everything out: seams, flat pieces, sensors, G-code, moulds, report",
         description="From a mesh to a skin ready to be cast and printed. DIR gets skin.skin, report.json, report.html, preview.png, "
-        "flat.svg, flat.pdf, flat.dxf, flat.obj, wrap_strain.svg, wiring.csv, gcode/PIECE.gcode and mould/PIECE.stl. In place of a "
+        "flat.svg, flat.pdf, flat.dxf, flat.obj, wrap_strain.svg, wiring.csv, gcode/PIECE.gcode, toolpath/PIECE.svg and mould/PIECE.stl. In place of a "
         "mesh, a skin document may be given: its seams, and its sensors where it has any, are taken as they are.",
     )
     steps.add_mesh_options(p)
@@ -72,7 +72,7 @@ def run(args: argparse.Namespace) -> int:
 
 def _make(args: argparse.Namespace, folder: Path, watch: Stopwatch, progress: Progress) -> tuple[dict[str, Any], int]:
     """The report, and how many of its warnings the user has read already."""
-    from gcode.write import write_skin
+    from gcode.write import write_previews, write_skin
     from skinfab.document import save_skin
     from skinfab.mould import can_be_cast
     from skinfab.progress import peak_rss_mb
@@ -91,6 +91,8 @@ def _make(args: argparse.Namespace, folder: Path, watch: Stopwatch, progress: Pr
     progress(0.75, "writing G-code")
     with watch.phase("gcode"):
         printed = write_skin(skin, folder / "gcode", printer=used.printer) if skin.sensors else ()
+        (folder / "toolpath").mkdir()
+        tool_paths = write_previews(skin, printed, folder / "toolpath", printer=used.printer)
         remarks = [remark for w in printed for remark in w.plan.warnings]
     progress(0.8, "making moulds")
     with watch.phase("mould"):
@@ -119,7 +121,7 @@ def _make(args: argparse.Namespace, folder: Path, watch: Stopwatch, progress: Pr
         strains=strains,
     )
     with watch.phase("draw"):
-        _write_pictures(skin, distortions, strains, report, folder)
+        _write_pictures(skin, distortions, strains, report, folder, tool_paths)
     # The pictures take a while, and the report says how long all of it took.
     report |= {"timing_s": watch.timing_s(), "peak_rss_mb": peak_rss_mb()}
     write_report(report, folder / "report.json")
@@ -230,7 +232,9 @@ def _recipe(moulds: list[CastingMould], printed: Sequence[PieceGcode], used: ste
     return weighed.as_dict() | {"steps": work_steps(weighed, used.material, jobs=jobs, home=used.printer.home)}
 
 
-def _write_pictures(skin: Skin, distortions: list[Distortion], strains: SensorStrains, report: dict[str, Any], folder: Path) -> None:
+def _write_pictures(
+    skin: Skin, distortions: list[Distortion], strains: SensorStrains, report: dict[str, Any], folder: Path, tool_paths: Sequence[Path]
+) -> None:
     from skinfab.report.html import write_html
     from skinfab.report.preview import draw_preview
     from skinfab.report.strain_picture import write_strain_picture
@@ -241,5 +245,6 @@ def _write_pictures(skin: Skin, distortions: list[Distortion], strains: SensorSt
         "The skin at a glance": folder / "preview.png",
         "The flat pieces, to scale": folder / "flat.svg",
         "What wearing stretches (red) and squeezes (blue)": folder / "wrap_strain.svg",
+        **{f"How {file.stem} is printed, to scale": file for file in tool_paths},
     }
     write_html(report, folder / "report.html", pictures=pictures)

@@ -49,6 +49,17 @@ def test_json_and_arcs_as_lines(document: Path, tmp_path: Path, capsys: pytest.C
     assert text.count("\n") == entry["lines"] and "\nG3 " not in text
 
 
+def test_preview_is_written_beside_the_file(document: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["gcode", str(document), "-o", str(tmp_path / "out"), "--preview"]) == 0
+    picture = tmp_path / "out/P1.svg"
+    assert f"{picture}: its tool path" in capsys.readouterr().out
+    assert picture.read_text().startswith("<svg") and 'class="wall"' in picture.read_text()
+    assert main(["gcode", str(document), "-o", str(tmp_path / "out"), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["previews"] == []
+    assert main(["gcode", "check", str(tmp_path / "out/P1.gcode"), "--preview"]) == 2
+    assert "so it takes no --preview" in capsys.readouterr().err
+
+
 def test_check_refuses_a_foreign_file_line_by_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "foreign.gcode"
     file.write_text("G90\nG0 Z10 F250\nG0 X20 Y20 F250\nG0 Z2.3 F250\nG1 X30 Y20 E-40 F250\nG02 X50 Y20 I11 J0 E-80 F250\n")

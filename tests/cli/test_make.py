@@ -44,7 +44,8 @@ def test_all_files_are_there(made: tuple[str, Path, dict]) -> None:
     _, folder, report = made
     names = {str(p.relative_to(folder)) for p in folder.rglob("*") if p.is_file()}
     listed = {entry["file"] for part in ("gcode", "moulds") for entry in report[part]}
-    assert names == {*results.ALWAYS, *listed}
+    tool_paths = {f"toolpath/{Path(g['file']).stem}.svg" for g in report["gcode"]}
+    assert names == {*results.ALWAYS, *listed, *tool_paths}
     assert {Path(m["file"]).stem for m in report["moulds"]} == {p["id"] for p in report["pieces"]}
     assert report["gcode"]
 
