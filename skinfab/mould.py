@@ -19,7 +19,7 @@ from skinfab.mould_plan import MouldPlan, mould_plan
 from skinfab.mould_taper import tapered
 from skinfab.pieces import Piece
 from skinfab.skin import Skin
-from skinfab.tolerances import CAVITY_FRACTION, MOULD_GRID_MM
+from skinfab.tolerances import CAVITY_FRACTION, MOULD_GRID_MM, MOULD_SLIT_MM
 from skinfab.wire_exits import WirePad, WireSlot, wire_pads
 
 #: How far the wall stands above the silicone, mm: the pour does not run over before it levels, and
@@ -232,7 +232,15 @@ def _prism(region: Any, low: float, high: float) -> Any:
 def _printable(solid: Any) -> tuple[NDArray[np.float32], NDArray[np.int64]]:
     """Vertices and triangles in single precision, in an order that depends on the shape alone."""
     # Points nearer to each other than the grid could become one in single precision, and two edges with them.
-    mesh = solid.simplify(MOULD_GRID_MM).to_mesh64()
+    V, F = _rounded(solid.simplify(MOULD_GRID_MM))
+    if not is_watertight(F):
+        # Where two walls touch in a line, that line has four faces: details below the width of a slit are let go.
+        V, F = _rounded(solid.simplify(MOULD_SLIT_MM))
+    return V, F
+
+
+def _rounded(solid: Any) -> tuple[NDArray[np.float32], NDArray[np.int64]]:
+    mesh = solid.to_mesh64()
     V, back = np.unique(mesh.vert_properties[:, :3].astype(np.float32), axis=0, return_inverse=True)
     F = back.reshape(-1)[mesh.tri_verts.astype(np.int64)]
     F = F[(F[:, 0] != F[:, 1]) & (F[:, 1] != F[:, 2]) & (F[:, 2] != F[:, 0])]
