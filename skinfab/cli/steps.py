@@ -192,6 +192,12 @@ def surface(args: argparse.Namespace, mesh: Mesh, *, usual: float = 0.0) -> Surf
     from skinfab.mesh.offset import OffsetError, offset_mesh
 
     thickness = usual if args.thickness is None else args.thickness
+    size = float((mesh.bbox[1] - mesh.bbox[0]).max())
+    if thickness > size:
+        raise InputError(
+            f"a skin {thickness:g} mm thick does not go on an object {size:.3g} mm long; check --units and --thickness, or scale the "
+            "object up with --scale"
+        )
     try:
         offset = offset_mesh(mesh, thickness * args.neutral, round_off=args.thickness is None)
     except OffsetError as fault:

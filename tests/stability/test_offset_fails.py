@@ -137,11 +137,20 @@ def asked(thickness: float | None) -> Namespace:
 
 
 def test_a_given_up_offset_is_a_skin_without_thickness() -> None:
-    mesh = dimple(1.0)
-    found = surface(asked(None), mesh, usual=2.5)
+    mesh = dimple(2.0)
+    found = surface(asked(None), mesh, usual=3.9)
     assert found.mesh is mesh and found.thickness == 0 and "stretched on" in found.remarks[0]
-    with pytest.raises(InputError, match=r"--thickness 2\.5: .*, give --thickness 1\.\d\d or less, or leave it to skinfab make"):
-        surface(asked(2.5), mesh, usual=2.5)
+    with pytest.raises(InputError, match=r"--thickness 3\.9: .*, give --thickness [23]\.\d+ or less, or leave it to skinfab make"):
+        surface(asked(3.9), mesh, usual=3.9)
+
+
+def test_a_skin_thicker_than_its_object() -> None:
+    V, F = shapes.cube()
+    with pytest.raises(InputError, match=r"2\.5 mm thick does not go on an object 0\.04 mm long; check --units"):
+        surface(asked(None), Mesh(0.04 * V, F), usual=2.5)
+    with pytest.raises(InputError, match=r"1e\+06 mm thick does not go on an object 40 mm long"):
+        surface(asked(1e6), Mesh(40 * V, F))
+    assert surface(asked(0.0), Mesh(0.04 * V, F)).thickness == 0
 
 
 def test_a_thickness_that_is_not_poured_is_said() -> None:
