@@ -31,8 +31,9 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "make",
         help="mesh in, everything out: seams, flat pieces, sensors, G-code, moulds, report",
         description="From a mesh to a skin ready to be cast and printed. DIR gets skin.skin, report.json, report.html, preview.png, "
-        "flat.svg, flat.pdf, flat.dxf, flat.obj, wrap_strain.svg, wiring.csv, gcode/PIECE.gcode, toolpath/PIECE.svg and mould/PIECE.stl. In place of a "
-        "mesh, a skin document may be given: its seams, and its sensors where it has any, are taken as they are.",
+        "flat.svg, flat.pdf, flat.dxf, flat.obj, wrap_strain.svg, wiring.csv, gcode/PIECE.gcode, toolpath/PIECE.svg "
+        "and mould/PIECE.stl. In place of a mesh, a skin document may be given: its seams, "
+        "and its sensors where it has any, are taken as they are.",
     )
     steps.add_mesh_options(p)
     p.add_argument("-o", "--output", metavar="DIR", type=Path, required=True, help="folder for the results, made if missing")

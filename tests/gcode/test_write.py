@@ -9,9 +9,9 @@ import pytest
 
 from gcode.emit import emit
 from gcode.plan import Plan
-from gcode.printer import Printer
+from gcode.printer import Nozzle, Printer
 from gcode.program import Extrude
-from gcode.write import checked_text, write_gcode, write_skin
+from gcode.write import checked_text, write_gcode, write_previews, write_skin
 from skinfab.errors import InputError, RefusedError
 from skinfab.mesh.model import Mesh
 from skinfab.patterns.contact_spiral import ContactSpiral
@@ -86,6 +86,16 @@ def test_one_bad_piece_keeps_all_files_away(skin: Skin, printer: Printer, tmp_pa
     slow = replace(printer, pump=replace(printer.pump, flow_min=2.5))
     with pytest.raises(RefusedError, match=r"piece P1 was not written: line \d+, pattern C\d: its flow is 2.017"):
         write_skin(skin, tmp_path / "gcode", printer=slow)
+    assert not (tmp_path / "gcode").exists()
+
+
+def test_a_nozzle_that_would_meet_the_wall_keeps_all_files_away(skin: Skin, printer: Printer, tmp_path: Path) -> None:
+    near = replace(skin, sensors=(*skin.sensors, Sensor("C4", "P2", SPIRAL, 4.0, 20, 0.0, 3)))
+    written = write_skin(near, tmp_path / "fine", printer=printer)
+    assert len(written) == 3 and len(write_previews(near, written, tmp_path / "fine")) == 3
+    thick = replace(printer, nozzle=Nozzle(2.5, 0.2))
+    with pytest.raises(RefusedError, match=r"piece P2 was not written: line \d+, pattern C4: at X\S+ Y\S+ Z1.60 the nozzle's axis is"):
+        write_skin(near, tmp_path / "gcode", printer=thick)
     assert not (tmp_path / "gcode").exists()
 
 
