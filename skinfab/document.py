@@ -83,6 +83,8 @@ def load_skin(path: str | Path) -> Skin:
     except IsADirectoryError:
         raise InputError(f"{path}: is a folder; give a .skin file") from None
     except zipfile.BadZipFile as fault:
+        if path.suffix.lower() != ".skin":
+            raise InputError(f"{path}: not a skin document; make one from a mesh with skinfab make or skinfab segment") from None
         raise InputError(f"{path}: not a whole skin document ({fault}); save it again or take a copy") from None
     except InputError as fault:
         raise InputError(f"{path}: {fault}") from fault

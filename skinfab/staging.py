@@ -20,7 +20,7 @@ from skinfab.files import explain_os_error
 REPORT_MAX_BYTES = 64_000_000
 
 #: Folders in which a run may remove what an earlier run made.
-OWN_FOLDERS = ("gcode", "mould")
+OWN_FOLDERS = ("gcode", "mould", "toolpath")
 
 _NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS)
 
@@ -29,7 +29,7 @@ _NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS)
 def staged_folder(target: str | Path) -> Iterator[Path]:
     """Give a temporary folder inside `target`; on success move its files into place, otherwise remove it.
 
-    Files in ``gcode/`` and ``mould/`` that the ``report.json`` of an earlier run lists and this run has not
+    Files in ``gcode/``, ``mould/`` and ``toolpath/`` that the ``report.json`` of an earlier run lists and this run has not
     made again are removed; nothing else that lies in `target` is touched. ``report.json`` is moved last, so
     what it lists is there. Ctrl-C waits while files are moved or removed.
 
@@ -146,13 +146,14 @@ def _move_into_place(stage: Path, target: Path) -> None:
 
 
 def _made_earlier(target: Path) -> set[Path]:
-    """The G-code and mould files that the report of an earlier run lists, by path inside `target`."""
+    """The G-code, tool-path and mould files that the report of an earlier run lists, by path inside `target`."""
     report = target / "report.json"
     try:
         if report.stat().st_size > REPORT_MAX_BYTES:
             return set()
         data = json.loads(report.read_text(encoding="utf-8"))
         listed = [str(entry["file"]) for part in ("gcode", "moulds") for entry in data[part]]
+        listed += [f"toolpath/{PurePosixPath(entry['file']).stem}.svg" for entry in data["gcode"]]
     except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return set()  # no earlier run, or somebody else's report.json: nothing of ours to remove
     found = set()

@@ -38,12 +38,13 @@ def test_files_and_sub_folders_arrive(tmp_path: Path) -> None:
 
 
 def test_stale_files_of_an_earlier_run_go_and_the_users_stay(tmp_path: Path) -> None:
-    write_run(tmp_path, {"gcode/P1.gcode": "1", "gcode/P2.gcode": "2"})
+    write_run(tmp_path, {"gcode/P1.gcode": "1", "gcode/P2.gcode": "2", "toolpath/P1.svg": "1", "toolpath/P2.svg": "2"})
     (tmp_path / "gcode" / "mine.gcode").write_text("mine")
+    (tmp_path / "toolpath" / "mine.svg").write_text("mine")
     (tmp_path / "notes.txt").write_text("mine")
-    write_run(tmp_path, {"gcode/P1.gcode": "new"})
+    write_run(tmp_path, {"gcode/P1.gcode": "new", "toolpath/P1.svg": "new"})
     kept = tree(tmp_path)
-    assert kept.keys() == {"gcode/P1.gcode", "gcode/mine.gcode", "notes.txt", "report.json"}
+    assert kept.keys() == {"gcode/P1.gcode", "gcode/mine.gcode", "toolpath/P1.svg", "toolpath/mine.svg", "notes.txt", "report.json"}
     assert kept["gcode/P1.gcode"] == "new"
 
 

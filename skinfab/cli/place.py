@@ -128,6 +128,8 @@ def run(args: argparse.Namespace) -> int:
     material = load_material(skin.material)
     target = args.output or args.skin
     warnings: list[str] = []
+    if skin.sensors and not (args.list or changes):
+        steps.say([f"the {steps.counted(len(skin.sensors), 'sensor')} that {args.skin} had are placed anew; --list would only show them"])
     if not args.list:
         sensors, warnings = _changed(skin, material, args) if changes else steps.place_sensors(skin, material, args.sensors)
         skin = replace(skin, sensors=sensors)

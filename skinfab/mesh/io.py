@@ -109,6 +109,8 @@ def load_mesh(path: str | Path, *, units: str | None = None, scale: float = 1.0)
 
 
 def _read_bytes(path: Path) -> bytes:
+    if path.suffix.lower() == ".skin":
+        raise InputError(f"{path} is a skin document, which is cut and flat already; skinfab make, place, mould and gcode take it")
     if path.suffix.lower() not in FORMATS:
         raise InputError(f"{path} is not a mesh file skinfab reads; give one of {', '.join(FORMATS)}")
     if path.is_dir():

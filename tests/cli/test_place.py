@@ -182,3 +182,17 @@ def test_the_user_guides_changes(document: Path, monkeypatch: pytest.MonkeyPatch
     assert main(command.split()) == 0
     left = {s.id: s for s in load_skin("skin.skin").sensors}
     assert "C3" not in left and left["C2"].pattern.s == 30
+
+
+def test_placing_anew_is_said(document: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["place", str(document)]) == 0
+    assert "placed anew" not in capsys.readouterr().err
+    assert main(["place", str(document)]) == 0
+    assert "the 6 sensors that" in capsys.readouterr().err
+
+
+def test_a_mesh_is_no_document_and_a_document_no_mesh(document: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["place", str(ROOT / "meshes/cube.obj"), "-o", str(tmp_path / "o.skin")]) == 1
+    assert "make one from a mesh with skinfab make or skinfab segment" in capsys.readouterr().err
+    assert main(["flatten", str(document), "-o", str(tmp_path / "o.obj")]) == 1
+    assert "is a skin document, which is cut and flat already" in capsys.readouterr().err
