@@ -16,7 +16,7 @@ from gcode.printer import Cleaning, Park, Printer
 from gcode.program import Clean, Comment, Dwell, Extrude, Prime, Program, Retract, Step, Travel, on_grid
 from skinfab.errors import InputError, RefusedError
 from skinfab.material import Material
-from skinfab.paths import Path
+from skinfab.paths import Path, Segment
 from skinfab.pieces import Piece
 from skinfab.placement.distance import Curves, distance
 from skinfab.placement.sensor import Sensor
@@ -90,7 +90,8 @@ def plan(piece: Piece, sensors: Sequence[Sensor], *, printer: Printer, material:
             raise InputError(f"sensor {sensor.id} lies on piece {sensor.piece}, not on {piece.id}")
     offset = bed_offset(piece, printer)
     paths = {s.id: s.printed_path.transformed(angle=0.0, shift=offset) for s in sensors}
-    planner = _Planner(printer, material, wall_of(piece, material, offset), paths)
+    pad_rows = {s.id: (len(s.printed_path.segments) - len(s.path.segments)) // 2 for s in sensors}
+    planner = _Planner(printer, material, wall_of(piece, material, offset), paths, pad_rows)
     planner.begin()
     for name, path in nearest_order(paths, start=(printer.bed.origin[0], printer.bed.origin[1])):
         planner.pattern(name, path)
@@ -124,12 +125,13 @@ def nearest_order(paths: dict[str, Path], *, start: Point) -> list[tuple[str, Pa
 class _Planner:
     """Appends the steps of pattern after pattern and remembers the ink that is laid."""
 
-    def __init__(self, printer: Printer, material: Material, wall: Wall, paths: dict[str, Path]) -> None:
+    def __init__(self, printer: Printer, material: Material, wall: Wall, paths: dict[str, Path], pad_rows: dict[str, int]) -> None:
         self.printer, self.material = printer, material
         self.area = material.ink.bead_area_mm2
         self.wall = wall
         self.laid = Laid()
         self.paths = paths
+        self.pad_rows = pad_rows  # how many segments of a path, at either end, are its pad
         self.steps: list[Step] = []
         self.warnings: list[str] = []
 
@@ -200,27 +202,38 @@ class _Planner:
         radius = math.sqrt(self.area / math.pi)
         need = max(radius, needed_room(self.wall, self.printer.nozzle, self.printer.heights.print))
         length = free_length(at, direction, wanted, self.laid, radius, leaves=leaves)
+        obstacle = "wet ink"
         for tenths in range(round(10 * length / wanted), -1, -1):
             length = wanted * tenths / 10
             end = (at[0] + direction[0] * length, at[1] + direction[1] * length)
             run = Straight(at, end)
-            if not length or (self.wall.room([run.segment]) >= need and not (kind == "print-overrun" and self._meets_path(name, run))):
+            if not length:
+                break
+            if self.wall.room([run.segment]) < need:
+                obstacle = "the mould's wall"
+            elif met := self._met_by_ink(name, run) if kind == "print-overrun" else None:
+                obstacle = "its own path" if met == name else f"pattern {met}"
+            else:
                 break
         if length < wanted * (1 - 1e-9):
-            self.warnings.append(f"{name}: {kind} cut from {wanted:g} to {length:.2g} mm, for the mould's wall or wet ink is near")
+            self.warnings.append(f"{name}: {kind} cut from {wanted:g} to {length:.2g} mm, for {obstacle} is near")
         return end if length else at
 
-    def _meets_path(self, name: str, run: Straight) -> bool:
-        """Would ink along `run`, before the path of that name, touch what is printed later: another pattern, or its own?"""
-        ink = self.material.ink
+    def _met_by_ink(self, name: str, run: Straight) -> str | None:
+        """Which pattern ink along `run`, before the path of that name, would come too near to: one printed later, or itself."""
         for other, path in self.paths.items():
-            segments = (
-                path.segments if other != name else [s for s in path.segments if not {shape_of(s).start, shape_of(s).end} & {run.start}]
-            )
-            room = ink.bead_width + (self.material.gap if other != name else 0.0)
+            segments = self._beyond_pad(path, self.pad_rows[name], run.start) if other == name else path.segments
+            room = self.material.ink.bead_width + self.material.gap
             if segments and distance(Curves.of_segments([run.segment]), Curves.of_segments(segments)) < room:
-                return True
-        return False
+                return other
+        return None
+
+    def _beyond_pad(self, path: Path, rows: int, start: Point) -> Sequence[Segment]:
+        """A path without the pad it begins with, from whichever end, and without what touches its `start`."""
+        begins = shape_of(path.segments[0]).start == start
+        own = path.segments[rows:] if begins else path.segments[: len(path.segments) - rows]
+        # The rows of a pad are one area of ink, closer than two beads may be; the run goes on along the first of them.
+        return [s for s in own if start not in (shape_of(s).start, shape_of(s).end)]
 
     def _extrude(self, name: str, shapes: Sequence[Shape]) -> None:
         lowered: Counter[tuple[str, float, float]] = Counter()

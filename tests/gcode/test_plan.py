@@ -93,8 +93,8 @@ def test_overruns_stop_where_the_nozzle_would_meet_the_wall_and_say_so(
 ) -> None:
     planned = plan(make_piece(100, 20), [make_sensor("C1", Path((Line((0, 0), (97.3, 0)),)), 1.4, 10)], printer=printer, material=material)
     assert planned.warnings == (
-        "C1: start overrun cut from 1 to 0.5 mm, for the mould's wall or wet ink is near",
-        "C1: end overrun cut from 1 to 0.4 mm, for the mould's wall or wet ink is near",
+        "C1: start overrun cut from 1 to 0.5 mm, for the mould's wall is near",
+        "C1: end overrun cut from 1 to 0.4 mm, for the mould's wall is near",
     )
     assert check_program(planned.program, printer) == ()
 
@@ -195,6 +195,35 @@ def test_ink_before_a_path_keeps_off_what_is_printed_later(
                 shapes[pattern].append(step.shape.segment)
         apart = distance(Curves.of_segments(shapes["A"]), Curves.of_segments(shapes["B"]))
         assert apart >= material.ink.bead_width + material.gap - 1e-4, dx
+
+
+@pytest.mark.parametrize("pad", [0.0, 2.0, 3.0])
+@pytest.mark.parametrize("kind", [ContactSpiral, StrainLines])
+def test_a_pad_is_no_obstacle_to_the_ink_before_it(
+    make_piece: Callable, printer: Printer, material: Material, kind: type[ContactSpiral | StrainLines], pad: float
+) -> None:
+    """The rows of a pad lie closer than two beads may; ink runs on along its first row all the same, and stays off the conductor."""
+    long = replace(printer, process=replace(printer.process, print_overrun=1.0))
+    sensor = Sensor("A", "P1", kind(**{**kind.example, "pad": pad}), 60, 80, 0.3, 0)
+    planned = plan(make_piece(220, 200), [sensor], printer=long, material=material)
+    assert planned.warnings == ()
+    assert planned.program.ink == pytest.approx(material.ink.bead_area_mm2 * (sensor.printed_path.length + 1.0), rel=1e-5)
+    assert check_program(planned.program, long) == ()
+    if pad:
+        conductor = sensor.path.transformed(angle=0.0, shift=planned.offset)
+        apart = distance(Curves.of_segments([extrusions(planned)[0].shape.segment]), Curves.of_segments(conductor.segments))
+        assert apart >= material.ink.bead_width + material.gap - 1e-4
+
+
+def test_ink_before_a_path_stops_short_of_its_own_conductor_and_says_so(make_piece: Callable, printer: Printer, material: Material) -> None:
+    long = replace(printer, process=replace(printer.process, print_overrun=10.0))
+    sensor = Sensor("A", "P1", ContactSpiral(n=3, x=2.0, b=3.0, l=6.0, s=22.0), 60, 80, 0.3, 0)
+    planned = plan(make_piece(220, 200), [sensor], printer=long, material=material)
+    (warning,) = planned.warnings
+    assert warning.startswith("A: print-overrun cut from 10 to ") and warning.endswith(" mm, for its own path is near")
+    conductor = sensor.path.transformed(angle=0.0, shift=planned.offset)
+    apart = distance(Curves.of_segments([extrusions(planned)[0].shape.segment]), Curves.of_segments(conductor.segments))
+    assert material.ink.bead_width + material.gap - 1e-4 <= apart < 3.0
 
 
 def test_travel_never_crosses_wet_ink_at_print_height(make_piece: Callable, printer: Printer, material: Material) -> None:
