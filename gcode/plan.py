@@ -31,7 +31,7 @@ class Plan:
     program : Program
         Quantised, in machine coordinates.
     offset : (x, y), mm
-        Added to the piece frame: `bed_offset`.
+        Added to the piece frame.
     warnings : tuple of str
         Where a speed was lowered or an overrun cut short, one sentence for each pattern and reason.
     """
@@ -60,7 +60,7 @@ def bed_offset(piece: Piece, printer: Printer) -> Point:
     return on_grid(x), on_grid(y)
 
 
-def plan(piece: Piece, sensors: Sequence[Sensor], *, printer: Printer, material: Material) -> Plan:
+def plan(piece: Piece, sensors: Sequence[Sensor], *, printer: Printer, material: Material, offset: Point | None = None) -> Plan:
     """The program that prints all `sensors` of one piece.
 
     Patterns are printed in the order of nearest neighbours, each from the nearer of its ends, travelling above the
@@ -75,6 +75,8 @@ def plan(piece: Piece, sensors: Sequence[Sensor], *, printer: Printer, material:
     printer : Printer
     material : Material
         Its bead's cross-section times the path's length is the volume laid.
+    offset : (x, y), mm, optional
+        Machine coordinates of the piece frame's origin; `bed_offset` if not given.
 
     Raises
     ------
@@ -88,7 +90,7 @@ def plan(piece: Piece, sensors: Sequence[Sensor], *, printer: Printer, material:
     for sensor in sensors:
         if sensor.piece != piece.id:
             raise InputError(f"sensor {sensor.id} lies on piece {sensor.piece}, not on {piece.id}")
-    offset = bed_offset(piece, printer)
+    offset = bed_offset(piece, printer) if offset is None else offset
     paths = {s.id: s.printed_path.transformed(angle=0.0, shift=offset) for s in sensors}
     pad_rows = {s.id: (len(s.printed_path.segments) - len(s.path.segments)) // 2 for s in sensors}
     planner = _Planner(printer, material, wall_of(piece, material, offset), paths, pad_rows)

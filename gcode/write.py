@@ -14,6 +14,7 @@ from gcode.plan import Plan, plan
 from gcode.preview import draw_toolpath
 from gcode.printer import Printer, load_printer
 from gcode.program import Program
+from gcode.seat import seat
 from gcode.words import read_text
 from skinfab.errors import InputError, RefusedError, SkinfabError
 from skinfab.files import atomic_write, explain_os_error
@@ -65,7 +66,8 @@ def write_skin(skin: Skin, folder: str | Path, *, arcs: Arcs | None = None, prin
     Raises
     ------
     RefusedError
-        A sensor lies outside its piece or too close to another, or a program fails its check.
+        A sensor lies outside its piece or too close to another, a mould does not lie on the bed beside the cleaning and
+        park places, or a program fails its check.
     InputError
         No sensor at all, a bad profile, or a folder that cannot be written.
     """
@@ -74,9 +76,12 @@ def write_skin(skin: Skin, folder: str | Path, *, arcs: Arcs | None = None, prin
     material = load_material(skin.material)
     validate(skin, material)
     pieces = [p for p in skin.pieces if skin.sensors_on(p.id)]
-    plans = [plan(p, skin.sensors_on(p.id), printer=printer, material=material) for p in pieces]
-    if not plans:
+    if not pieces:
         raise InputError("this skin has no sensor, so there is nothing to print; place one first")
+    offsets = [seat(skin, p, printer=printer, material=material) for p in pieces]
+    plans = [
+        plan(p, skin.sensors_on(p.id), printer=printer, material=material, offset=offset) for p, offset in zip(pieces, offsets, strict=True)
+    ]
     walls = [wall_of(piece, material, planned.offset) for piece, planned in zip(pieces, plans, strict=True)]
     texts = [checked_text(planned.program, printer=printer, arcs=arcs, wall=wall) for planned, wall in zip(plans, walls, strict=True)]
     folder = Path(folder)

@@ -157,12 +157,7 @@ def _cast(piece: Piece, material: Material, depth: float, pads: Sequence[WirePad
 
 def skin_moulds(skin: Skin, *, material: Material) -> list[CastingMould]:
     """One mould a piece that can be cast: a wire slot for either pad of each sensor, a lip on one side of each seam."""
-    sewn: set[str] = set()
-    lips: dict[int, list[NDArray[np.float64]]] = {}
-    for side in seam_sides(skin.pieces):
-        if side.label and side.label not in sewn and material.mould.lip > 0:
-            sewn.add(side.label)
-            lips.setdefault(side.piece, []).append(side.points)
+    lips = seam_lips(skin, material=material)
     return [
         casting_mould(
             piece,
@@ -173,6 +168,17 @@ def skin_moulds(skin: Skin, *, material: Material) -> list[CastingMould]:
         for k, piece in enumerate(skin.pieces)
         if can_be_cast(piece, material)
     ]
+
+
+def seam_lips(skin: Skin, *, material: Material) -> dict[int, list[NDArray[np.float64]]]:
+    """Runs of outline that get an adhesive lip, (k, 2) mm each, by the piece's place in ``skin.pieces``: one side of each seam."""
+    sewn: set[str] = set()
+    lips: dict[int, list[NDArray[np.float64]]] = {}
+    for side in seam_sides(skin.pieces):
+        if side.label and side.label not in sewn and material.mould.lip > 0:
+            sewn.add(side.label)
+            lips.setdefault(side.piece, []).append(side.points)
+    return lips
 
 
 def can_be_cast(piece: Piece, material: Material) -> bool:
