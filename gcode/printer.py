@@ -217,11 +217,12 @@ def _check(printer: Printer, where: str) -> None:
             raise InputError(f"{where}, {key} is {value:g}; it must be more than zero")
     if printer.home not in HOME_POLICIES:
         raise InputError(f"{where}, home is {printer.home!r}; it must be one of {', '.join(HOME_POLICIES)}")
-    if (park := printer.park) and not (park.x <= printer.bed.size[0] and park.y <= printer.bed.size[1]):
-        raise InputError(
-            f"{where}, park is at {park.x:g}, {park.y:g}; the bed is {printer.bed.size[0]:g} x {printer.bed.size[1]:g} mm, "
-            "name a place on it, beside the largest skin"
-        )
+    for name, place in (("cleaning", printer.cleaning), ("park", printer.park)):
+        if place and not (place.x <= printer.bed.size[0] and place.y <= printer.bed.size[1]):
+            raise InputError(
+                f"{where}, {name} is at {place.x:g}, {place.y:g}; the bed is {printer.bed.size[0]:g} x {printer.bed.size[1]:g} mm, "
+                "name a place on it, beside the largest mould"
+            )
     if not h.print_min <= h.print <= h.print_max < h.travel <= printer.bed.height:
         raise InputError(f"{where}, heights: print_min <= print <= print_max < travel <= bed height must hold, in mm")
     if not p.flow_min <= p.flow_max:

@@ -32,6 +32,14 @@ def test_a_file_of_ones_own(tmp_path: Path) -> None:
     assert cleaning is not None and (cleaning.x, cleaning.initial_extrude) == (5.0, 2.5)
 
 
+@pytest.mark.parametrize(("x", "y"), [(351, 6), (5, 350.5), (-1, 6)])
+def test_the_cleaning_place_is_on_the_bed(tmp_path: Path, x: float, y: float) -> None:
+    own = tmp_path / "mine.toml"
+    own.write_text(SOURCE + f"\n[cleaning]\nx = {x}\ny = {y}\nseconds = 3\ninitial_extrude = 2.5\n", encoding="utf-8")
+    with pytest.raises(InputError, match="cleaning, x is -1" if x < 0 else rf"cleaning is at {x}, {y}; the bed is 350 x 350 mm"):
+        load_printer(own)
+
+
 @pytest.mark.parametrize(
     ("old", "new", "says"),
     [
