@@ -12,6 +12,7 @@ from gcode.check_wall import Wall, needed_room, wall_of
 from gcode.clearance import Laid
 from gcode.emit import on_grid_of
 from gcode.geometry import Curve, Point, Shape, Straight, shape_of
+from gcode.order import short_order
 from gcode.printer import Cleaning, Park, Printer
 from gcode.program import Clean, Comment, Dwell, Extrude, Prime, Program, Retract, Step, Travel, on_grid
 from skinfab.errors import InputError, RefusedError
@@ -63,8 +64,8 @@ def bed_offset(piece: Piece, printer: Printer) -> Point:
 def plan(piece: Piece, sensors: Sequence[Sensor], *, printer: Printer, material: Material, offset: Point | None = None) -> Plan:
     """The program that prints all `sensors` of one piece.
 
-    Patterns are printed in the order of nearest neighbours, each from the nearer of its ends, travelling above the
-    mould's walls. Each is entered and left along its tangent, and ends with as much ink in the nozzle as it began.
+    Patterns are printed in an order of short travel (`gcode.order`), each from either of its ends, above the mould's
+    walls in between. Each is entered and left along its tangent, and ends with as much ink in the nozzle as it began.
     At last the head parks, where the profile names a place for it.
 
     Parameters
@@ -95,33 +96,11 @@ def plan(piece: Piece, sensors: Sequence[Sensor], *, printer: Printer, material:
     pad_rows = {s.id: (len(s.printed_path.segments) - len(s.path.segments)) // 2 for s in sensors}
     planner = _Planner(printer, material, wall_of(piece, material, offset), paths, pad_rows)
     planner.begin()
-    for name, path in nearest_order(paths, start=(printer.bed.origin[0], printer.bed.origin[1])):
+    for name, path in short_order(paths, start=(printer.bed.origin[0], printer.bed.origin[1])):
         planner.pattern(name, path)
     planner.end()
     program = on_grid_of(Program(piece.id, tuple(planner.steps), float(planner.area)), printer)
     return Plan(program, offset, tuple(planner.warnings))
-
-
-def nearest_order(paths: dict[str, Path], *, start: Point) -> list[tuple[str, Path]]:
-    """The paths, each next one the nearest by either of its ends, turned to begin there; ties go by name.
-
-    Every first pattern is tried, and the order of the shortest travel is kept.
-    """
-
-    def from_first(first: str, flip: bool) -> tuple[float, list[tuple[str, Path]]]:
-        order = [(first, paths[first].reversed() if flip else paths[first])]
-        travel = math.dist(start, order[0][1].start)
-        left = sorted(paths.keys() - {first})
-        while left:
-            here = order[-1][1].end
-            away, name, turn = min((math.dist(here, paths[n].end if t else paths[n].start), n, t) for n in left for t in (False, True))
-            order.append((name, paths[name].reversed() if turn else paths[name]))
-            travel += away
-            left.remove(name)
-        return travel, order
-
-    tries = [from_first(name, flip) for name in sorted(paths) for flip in (False, True)]
-    return min(tries, key=lambda found: round(found[0], 6))[1]
 
 
 class _Planner:

@@ -9,7 +9,7 @@ import pytest
 
 from gcode.check import check_program
 from gcode.geometry import Curve, Straight
-from gcode.plan import Plan, allowed_speed, bed_offset, nearest_order, plan
+from gcode.plan import Plan, allowed_speed, bed_offset, plan
 from gcode.printer import Cleaning, Park, Printer
 from gcode.program import Clean, Comment, Dwell, Extrude, Prime, Retract, Travel
 from skinfab.errors import InputError, RefusedError
@@ -99,14 +99,8 @@ def test_overruns_stop_where_the_nozzle_would_meet_the_wall_and_say_so(
     assert check_program(planned.program, printer) == ()
 
 
-def test_the_order_is_short_and_does_not_depend_on_the_input(
-    make_piece: Callable, make_sensor: Callable, printer: Printer, material: Material
-) -> None:
+def test_the_order_does_not_depend_on_the_input(make_piece: Callable, make_sensor: Callable, printer: Printer, material: Material) -> None:
     line = Path((Line((0, 0), (10, 0)),))
-    paths = {name: line.transformed(angle=0.0, shift=(0, y)) for name, y in [("A", 0), ("B", 40), ("C", 20), ("D", 60)]}
-    order = nearest_order(paths, start=(0.0, 0.0))
-    assert [name for name, _ in order] == ["A", "C", "B", "D"]
-    assert [tuple(p.start) for _, p in order] == [(0, 0), (10, 20), (0, 40), (10, 60)]  # turned to begin near
     sensors = [make_sensor(name, line, 20, 10 + y) for name, y in [("A", 0), ("B", 40), ("C", 20)]]
     there, back = (plan(make_piece(60, 80), s, printer=printer, material=material) for s in (sensors, sensors[::-1]))
     assert there == back
