@@ -13,6 +13,7 @@ from gcode.printer import Nozzle, Printer
 from gcode.program import Extrude
 from gcode.write import checked_text, write_gcode, write_previews, write_skin
 from skinfab.errors import InputError, RefusedError
+from skinfab.material import load_material
 from skinfab.mesh.model import Mesh
 from skinfab.patterns.contact_spiral import ContactSpiral
 from skinfab.pieces import Piece
@@ -105,3 +106,13 @@ def test_a_skin_without_sensors_and_a_folder_that_is_none(skin: Skin, tmp_path: 
     (tmp_path / "file").write_text("")
     with pytest.raises(InputError, match="cannot write"):
         write_skin(skin, tmp_path / "file")
+
+
+def test_a_whole_skin_with_pads_gets_its_print_overruns(skin: Skin, printer: Printer, tmp_path: Path) -> None:
+    plain = write_skin(skin, tmp_path / "plain", printer=printer)
+    inked = replace(printer, process=replace(printer.process, print_overrun=1.0))
+    written = write_skin(skin, tmp_path / "inked", printer=inked)
+    assert all(s.pattern.pad == 3.0 for s in skin.sensors) and [w.plan.warnings for w in written] == [(), ()]
+    more = [w.summary.ink_mm3 - p.summary.ink_mm3 for w, p in zip(written, plain, strict=True)]
+    area = load_material(skin.material).ink.bead_area_mm2
+    assert more == pytest.approx([2 * area, area], rel=1e-3)  # 1 mm of bead for each of two sensors and of one
