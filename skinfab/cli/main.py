@@ -35,6 +35,7 @@ COMMANDS = {
 
 INTERRUPTED = 130  # what a shell reports for a command that Ctrl-C ended
 AGAIN_S = 2.0  # after so many seconds an interrupt that did not get through is repeated
+AT_ONCE_S = 0.02  # and one that is known not to have got through
 BROKEN_PIPE = 141  # and for one whose reader went away
 
 
@@ -188,6 +189,14 @@ def _termination_as_interrupt() -> Iterator[list[int]]:
         if not _on_its_way_out():
             raise KeyboardInterrupt
 
+    def swallowed(unraisable: sys.UnraisableHookArgs) -> None:
+        # Raised inside a callback or a finaliser, where nothing can be raised: not told, as it comes again at once.
+        if unraisable.exc_type is KeyboardInterrupt:
+            signal.setitimer(signal.ITIMER_REAL, AT_ONCE_S)
+        else:
+            told(unraisable)
+
+    told = sys.unraisablehook
     # Whatever was set to be ignored (nohup), or is handled by a host program, stays so.
     ours = {signal.SIGINT: signal.default_int_handler, **dict.fromkeys((signal.SIGTERM, signal.SIGHUP, signal.SIGALRM), signal.SIG_DFL)}
     caught = {s: before for s, before in ours.items() if signal.getsignal(s) == before}
@@ -196,8 +205,11 @@ def _termination_as_interrupt() -> Iterator[list[int]]:
     try:
         for s in caught:
             signal.signal(s, interrupt)
+        if caught:
+            sys.unraisablehook = swallowed
         yield seen
     finally:
+        sys.unraisablehook = told
         if caught:
             signal.setitimer(signal.ITIMER_REAL, 0)
         for s, before in caught.items():

@@ -194,8 +194,8 @@ def test_a_swallowed_interrupt_comes_again() -> None:
     )
     code = FRAME.format(body="\n    ".join(body))
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=20)
-    assert done.stdout == "swallowed\n"
-    assert done.returncode == 130 and done.stderr.splitlines()[-1].startswith("skinfab: interrupted")
+    assert done.stdout in ("swallowed\n", "")
+    assert (done.returncode, done.stderr) == (130, "skinfab: interrupted; nothing half-written was left\n")
 
 
 @pytest.mark.parametrize(
