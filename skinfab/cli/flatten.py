@@ -105,7 +105,8 @@ def run(args: argparse.Namespace) -> int:
 
     _check_places(args)
     loaded = steps.load(args)
-    mesh = steps.surface(args, loaded.mesh).mesh
+    flattened = steps.surface(args, loaded.mesh)
+    mesh = flattened.mesh
     began = time.perf_counter()
     simplified: list[Simplified] = []
     pieces, distortions = _flatten(args, mesh, simplified)
@@ -116,7 +117,16 @@ def run(args: argparse.Namespace) -> int:
     _require_sound(args.method, pieces, distortions)
     write_flat_obj(mesh, pieces, sheet_offsets(pieces), args.output)
     if args.json:
-        found = figures(loaded, mesh, pieces, distortions, method=args.method, max_distortion=args.max_distortion, seconds=seconds)
+        found = figures(
+            loaded,
+            mesh,
+            pieces,
+            distortions,
+            method=args.method,
+            max_distortion=args.max_distortion,
+            seconds=seconds,
+            flattened_at=flattened.thickness * flattened.neutral,
+        )
         found |= (
             {"simplified": [{"n_faces": s.n_faces, "n_coarse": s.n_coarse, "effect": s.effect} for s in simplified]} if simplified else {}
         )

@@ -29,8 +29,9 @@ def figures(
     method: str,
     max_distortion: float,
     seconds: float,
+    flattened_at: float,
 ) -> dict[str, Any]:
-    """The figures of one flattening, ready for JSON; `mesh` is the surface that was flattened."""
+    """The figures of one flattening, ready for JSON; `mesh` is the surface that was flattened, `flattened_at` mm outside the object."""
     areas = [float(mesh.face_areas[p.faces].sum()) for p in pieces]
     kept = [_at_kept_area(mesh, piece, area) for piece, area in zip(pieces, areas, strict=True)]
     mean, most = overall(mesh, pieces, distortions)
@@ -38,6 +39,7 @@ def figures(
         "mesh": {"file": loaded.file, "sha256": loaded.sha256, "units": loaded.units, "scale": loaded.scale, "notes": list(loaded.notes)},
         "method": method,
         "n_faces": len(mesh.F),
+        "flattened_at_mm": flattened_at,
         "pieces": [
             {
                 "id": p.id,

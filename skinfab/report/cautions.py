@@ -26,7 +26,7 @@ def cautions(skin: Skin, distortions: Sequence[Distortion], sensors: Sequence[Ma
     distortions : sequence of Distortion
         One a piece, in order, all finite.
     sensors : sequence of mappings
-        As in the report: id and wrap_strain (mean, max).
+        As in the report: id and wrap_strain (max, resistance_factor).
 
     Returns
     -------
@@ -77,14 +77,14 @@ def _strained(sensors: Sequence[Mapping[str, Any]]) -> list[str]:
     bad.sort(key=lambda s: -abs(s["wrap_strain"]["max"]))
     entries = []
     for s in bad[:_SPELT_OUT]:
-        worst, mean = s["wrap_strain"]["max"], s["wrap_strain"]["mean"]
+        worst, whole = s["wrap_strain"]["max"], s["wrap_strain"]["resistance_factor"]
         entries.append(
             f"{s['id']} is {_way(worst)} by {abs(worst):.0%} in one place (times {(1 + worst) ** 2:.2f} there, "
-            f"times {(1 + mean) ** 2:.2f} over its whole length)".replace("%", " %")
+            f"times {whole:.2f} over its whole length)".replace("%", " %")
         )
     return [
-        f"{listed([s['id'] for s in bad], 'sensor')}: worn, the resistance at rest will be off by about (1 + e)^2, e the wrap "
-        f"strain: {'; '.join(entries)}{_more(bad)}. Move what must be exact to a flatter place"
+        f"{listed([s['id'] for s in bad], 'sensor')}: worn, the resistance at rest will be off by (1 + e)^2, e the wrap strain "
+        f"from place to place: {'; '.join(entries)}{_more(bad)}. Move what must be exact to a flatter place"
     ]
 
 

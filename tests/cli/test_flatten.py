@@ -229,3 +229,19 @@ def test_figures_say_what_was_flattened_and_how(tmp_path: Path) -> None:
     assert piece["distortion"]["mean"] == pytest.approx(piece["mean_at_kept_area"], rel=1e-9)
     # The parts are of each triangle; their means multiply to no less than nearly d.
     assert 2 <= piece["angle_mean"] < 2.1 and 2 <= piece["area_mean"] < 2.1
+    assert figures["flattened_at_mm"] == 0
+
+
+def test_a_thickness_says_how_far_outside_it_was_flattened(tmp_path: Path) -> None:
+    V, F = shapes.cap(24, 0.8)
+    mesh = written(tmp_path, V * 30, F)
+    words = ["--units", "mm", "--thickness", "2", "--neutral", "0.4", "--json", str(tmp_path / "o.json")]
+    assert main(["flatten", mesh, "-o", str(tmp_path / "o.obj"), *words]) == 0
+    figures = json.loads((tmp_path / "o.json").read_text())
+    assert figures["flattened_at_mm"] == pytest.approx(0.8)
+    # A cap of a sphere of 30 mm, 0.8 mm outside it.
+    on_object = sum(piece["area_on_object_mm2"] for piece in figures["pieces"])
+    flat = (tmp_path / "bare.json", tmp_path / "bare.obj")
+    assert main(["flatten", mesh, "-o", str(flat[1]), "--units", "mm", "--json", str(flat[0])]) == 0
+    bare = sum(piece["area_on_object_mm2"] for piece in json.loads(flat[0].read_text())["pieces"])
+    assert on_object / bare == pytest.approx((30.8 / 30) ** 2, rel=2e-3)

@@ -10,8 +10,8 @@ from skinfab.report.cautions import cautions, worst_place
 from skinfab.skin import Skin
 
 
-def strained(id: str, mean: float, worst: float) -> dict[str, object]:
-    return {"id": id, "wrap_strain": {"mean": mean, "max": worst}}
+def strained(id: str, factor: float, worst: float) -> dict[str, object]:
+    return {"id": id, "wrap_strain": {"max": worst, "resistance_factor": factor}}
 
 
 def scaled(skin: Skin, factor: tuple[float, float], *, id: str = "P1") -> tuple[Skin, Distortion]:
@@ -21,7 +21,7 @@ def scaled(skin: Skin, factor: tuple[float, float], *, id: str = "P1") -> tuple[
 
 
 def test_a_good_skin_is_not_warned_of(skin: Skin, distortions: list[Distortion]) -> None:
-    assert cautions(skin, distortions, [strained("C1", 0.05, -0.0999)]) == []
+    assert cautions(skin, distortions, [strained("C1", 1.1, -0.0999)]) == []
 
 
 @pytest.mark.parametrize(
@@ -58,9 +58,9 @@ def test_many_pieces_make_one_sentence_worst_first(skin: Skin) -> None:
 
 
 def test_sensors_by_name_with_what_it_does_to_their_resistance(skin: Skin, distortions: list[Distortion]) -> None:
-    (warning,) = cautions(skin, distortions, [strained("C1", 0.0, 0.02), strained("C6", -0.03, -0.2), strained("S1", 0.1, 0.5)])
+    (warning,) = cautions(skin, distortions, [strained("C1", 1.0, 0.02), strained("C6", 0.94, -0.2), strained("S1", 1.21, 0.5)])
     assert warning.startswith("sensors S1, C6: ") and "C1" not in warning and "(1 + e)^2" in warning
     assert "S1 is stretched by 50 % in one place (times 2.25 there, times 1.21 over its whole length)" in warning
     assert "C6 is squeezed by 20 % in one place (times 0.64 there, times 0.94 over its whole length)" in warning
-    (alone,) = cautions(skin, distortions, [strained("C6", -0.03, -0.2)])
+    (alone,) = cautions(skin, distortions, [strained("C6", 0.94, -0.2)])
     assert alone.startswith("sensor C6: ")
