@@ -70,7 +70,7 @@ def emit(program: Program, printer: Printer, *, arcs: Arcs = "native") -> str:
 def on_grid_of(program: Program, printer: Printer) -> Program:
     """The program as this printer's file can say it; doing it twice changes nothing more."""
     if printer.spindle:
-        return snapped(program, SpindleGrid(printer.spindle))
+        return snapped(program, SpindleGrid(printer.spindle, program))
     return quantised(program, e_per_mm3=printer.pump.e_per_mm3)
 
 

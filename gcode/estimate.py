@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gcode.geometry import Curve
-from gcode.grbl import S_DECIMALS
+from gcode.grbl import spindle_s
 from gcode.printer import Printer
 from gcode.program import Clean, Comment, Dwell, Extrude, Prime, Program, Retract, Travel
 
@@ -96,10 +96,7 @@ def print_time(program: Program, printer: Printer) -> float:
                 unit = (moved[0] / length, moved[1] / length, moved[2] / length)
                 run.append(_Block(length, step.speed, unit, unit))
         elif isinstance(step, Extrude):
-            if (
-                printer.spindle
-                and (asked := round(step.volume * step.speed / step.shape.length * printer.spindle.s_per_flow, S_DECIMALS)) != flow
-            ):
+            if printer.spindle and (asked := spindle_s(step, printer.spindle)) != flow:
                 total += _run_time(run, printer)
                 run, flow = [], asked
             into, out = step.shape.directions

@@ -2,11 +2,12 @@
 
 M3 runs the pump forward, M4 backward (the wire that turns a spindle the other way), M5 stops it; S is its rate,
 so many units for each mm^3/s. The ink of a move is therefore its rate times the time the move takes, and a step says
-its volume in whole hundredths of S. What follows from GRBL:
+its volume by S and F. What follows from GRBL:
 
 * G0 takes no speed, so every move is G1; one with the pump at rest is a travel.
 * A change of S waits until the head has stopped, and the pump runs on while the head speeds up and slows down: a bead
-  is a little thicker within v / a of a stop (0.01 s at 5 mm/s and 500 mm/s^2). Ink of one rate is best.
+  is a little thicker within v / a of a stop (0.01 s at 5 mm/s and 500 mm/s^2). S therefore stays one number as long
+  as the bead does, and F gives way by what that number is off: see `SpindleGrid`.
 * Homing is ``$H``, which is no G-code and homes Z too: it is done before, by hand.
 * Spindle mode, not laser mode ($32=0): in laser mode M4 would be forward, by the speed of the head.
 """
@@ -17,10 +18,11 @@ from dataclasses import replace
 
 from gcode.geometry import Curve, Shape
 from gcode.printer import Spindle
-from gcode.program import F_DECIMALS, XY_DECIMALS, Clean, Dwell, Extrude, InkGrid, Prime, Program, Retract, Step, Travel
+from gcode.program import XY_DECIMALS, Clean, Dwell, Extrude, InkGrid, Prime, Program, Retract, Step, Travel, speed_on_grid
+from skinfab.tolerances import SPINDLE_FRACTION
 
-#: Decimals of S; GRBL reads a float, most boards drive 255 levels.
-S_DECIMALS = 2
+#: Digits of the greatest S, and decimals of F: GRBL reads eight digits of a number into a float of 32 bits, which holds seven.
+S_DIGITS, F_DECIMALS = 7, 3
 
 REASONS = (
     "; GRBL: $32=0 (spindle mode) and $30 as the profile's s_max; the spindle's output drives the pump, M4 turns it back.",
@@ -40,25 +42,57 @@ ENDING = ("M2",)
 
 
 class SpindleGrid(InkGrid):
-    """Ink as S times time: S in hundredths, time at standstill in ms."""
+    """Ink as S times time, with few different S.
 
-    def __init__(self, spindle: Spindle) -> None:
+    Of all rates a program asks for, those within ``tolerances.SPINDLE_FRACTION`` above the lowest are run at that
+    lowest, and so on upward; where S gives way F does by the same share, down and never up, so that the ink per mm
+    stays what it was. A program on this grid has each rate apart by more than that, and stays as it is.
+    """
+
+    def __init__(self, spindle: Spindle, program: Program) -> None:
         super().__init__(1.0)
-        self.s_per_flow = spindle.s_per_flow
+        self.spindle = spindle
+        rates = sorted({_asked(step, spindle) for step in program.steps if isinstance(step, Extrude)})
+        self.rate: dict[float, float] = {}  # S of the file for S as asked for
+        lowest = 0.0
+        for s in rates:
+            lowest = s if s > lowest * (1 + SPINDLE_FRACTION) else lowest
+            self.rate[s] = lowest
 
     def standing(self, step: Prime | Retract) -> list[Step]:
-        """Ink moved at standstill."""
-        rate = max(round(step.rate * self.s_per_flow, S_DECIMALS), 10**-S_DECIMALS) / self.s_per_flow
+        """Ink moved at standstill, in whole ms."""
+        rate = s_on_grid(step.rate, self.spindle) / self.spindle.s_per_flow
         seconds = round(step.volume / rate * 1000) / 1000
         return [replace(step, volume=rate * seconds, rate=rate)] if seconds else []
 
-    def laid(self, shape: Shape, speed: float) -> float:
-        """Volume laid along a rounded shape, mm^3; nothing is carried on, for S should stay the same along a pattern."""
-        owed, self.owed = self.owed, 0.0
-        # Never S0, which would read as a travel.
-        s = max(round(owed * speed / shape.length * self.s_per_flow, S_DECIMALS), 10**-S_DECIMALS)
-        flow = s / self.s_per_flow
-        return volume_along(shape, flow, speed)
+    def laid(self, step: Extrude, shape: Shape) -> Extrude:
+        """A rounded shape of a step; nothing is carried on, for the ink per mm is that of the step, whatever its length became."""
+        self.owed = 0.0
+        asked = _asked(step, self.spindle)
+        s = self.rate[asked]
+        speed = speed_on_grid(step.speed * (s / asked), decimals=F_DECIMALS)
+        return Extrude(shape, volume_along(shape, s / self.spindle.s_per_flow, speed), speed)
+
+
+def s_on_grid(flow: float, spindle: Spindle) -> float:
+    """S for a flow, mm^3/s, as it will be read back; never 0, which would read as a travel."""
+    decimals = _s_decimals(spindle)
+    return max(round(flow * spindle.s_per_flow, decimals), 10.0**-decimals)
+
+
+def spindle_s(step: Extrude, spindle: Spindle) -> float:
+    """S of a step on the grid."""
+    return s_on_grid(step.volume * step.speed / step.shape.length, spindle)
+
+
+def _asked(step: Extrude, spindle: Spindle) -> float:
+    """S that a step needs at the speed it asks for."""
+    speed = speed_on_grid(step.speed, decimals=F_DECIMALS)
+    return s_on_grid(step.volume / step.shape.length * speed, spindle)
+
+
+def _s_decimals(spindle: Spindle) -> int:
+    return max(S_DIGITS - len(str(int(spindle.s_max))), 0)
 
 
 def volume_along(shape: Shape, flow: float, speed: float) -> float:
@@ -70,7 +104,7 @@ class GrblWriter:
     """Writes steps; F and S are sticky, so each is written only where it changes."""
 
     def __init__(self, spindle: Spindle) -> None:
-        self.s_per_flow = spindle.s_per_flow
+        self.spindle = spindle
         self.feed = ""
         self.pump = "M5"
 
@@ -103,7 +137,7 @@ class GrblWriter:
         return " ".join([code, *words, *self._feed(step.speed)])
 
     def _rate(self, flow: float) -> str:
-        return f"S{flow * self.s_per_flow:.{S_DECIMALS}f}"
+        return f"S{s_on_grid(flow, self.spindle):.{_s_decimals(self.spindle)}f}"
 
     def _turn(self, pump: str) -> list[str]:
         changed = pump != self.pump

@@ -200,11 +200,12 @@ class InkGrid:
         rate = speed_on_grid(step.rate * self.e_per_mm3) / self.e_per_mm3
         return [replace(step, volume=e / self.e_per_mm3, rate=rate)] if e else []
 
-    def laid(self, shape: Shape, speed: float) -> float:
-        """Volume laid along a rounded shape, of what is owed, mm^3."""
+    def laid(self, step: Extrude, shape: Shape) -> Extrude:
+        """A rounded shape of a step, with what is owed of ink."""
+        speed = speed_on_grid(step.speed * self._slowing(step.volume / step.shape.length, shape))
         e = max(round(self.owed, E_DECIMALS), 0.0)
         self.owed -= e
-        return e / self.e_per_mm3
+        return Extrude(shape, e / self.e_per_mm3, speed)
 
     def _extrude(self, step: Extrude) -> list[Step]:
         done: list[Step] = []
@@ -214,9 +215,8 @@ class InkGrid:
             shape = self._shape(part)
             if shape is None:
                 continue
-            speed = speed_on_grid(step.speed * self._slowing(step.volume / len(parts) / part.length, shape))
             self.at = shape.end
-            done.append(Extrude(shape, self.laid(shape, speed), speed))
+            done.append(self.laid(step, shape))
         return done
 
     def _slowing(self, area: float, shape: Shape) -> float:
@@ -247,10 +247,10 @@ def on_grid(value: float) -> float:
     return round(value, XY_DECIMALS) + 0.0
 
 
-def speed_on_grid(speed: float) -> float:
-    """A speed as it will be read back, mm/s: rounded down to 0.1 mm/min, so that a limit stays kept."""
-    steps = max(math.floor(speed * 60 * 10**F_DECIMALS + 1e-6), 1)
-    return round(steps / 10**F_DECIMALS, F_DECIMALS) / 60
+def speed_on_grid(speed: float, *, decimals: int = F_DECIMALS) -> float:
+    """A speed as it will be read back, mm/s: F in mm/min rounded down to its `decimals`, so that a limit stays kept."""
+    steps = max(math.floor(speed * 60 * 10**decimals + 1e-6), 1)
+    return round(steps / 10**decimals, decimals) / 60
 
 
 def _plain(text: str) -> str:

@@ -29,6 +29,9 @@ CAVITY_FRACTION = 0.005
 #: Chord tolerance where a preview or a mesh needs a polyline.
 PREVIEW_CHORD_MM = 0.02
 
+#: The same where wet ink is kept off wet ink: a hundredth of a bead's width.
+INK_CHORD_MM = 0.005
+
 #: Least slack of a triangle inequality, as a fraction of the mean edge: needles below it are mollified.
 MOLLIFY = 1e-9
 
@@ -69,6 +72,10 @@ SHORT_ARC_MM = 0.01
 #: Rounding places to 0.0001 mm changes the flow along a bead by less than this share where it is longer than
 #: 0.01 mm; along a shorter one, or where rounding left out the shape before it, the head is slowed down to keep it.
 GRID_FLOW_FRACTION = 0.02
+
+#: Rates of a pump that is a spindle (GRBL's S) are the same where they differ by less than this share: one step of an
+#: 8-bit PWM, which is what most boards make of S. The head is slowed down by as much, so the ink per mm is not touched.
+SPINDLE_FRACTION = 1 / 255
 
 #: A point this far (barycentric) outside a flat triangle still lies in it: rounding must open no gap between neighbours.
 BARYCENTRIC = 1e-9
