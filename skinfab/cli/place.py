@@ -79,14 +79,18 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "there already are replaced. Or change those that are there, one by one, in the order given; nothing is written unless all of "
         "them fit afterwards.",
     )
-    p.add_argument("skin", metavar="SKIN", type=Path, help="the skin document")
+    p.add_argument("skin", metavar="SKIN", nargs="?", type=Path, help="the skin document")
     p.add_argument(
         "-o", "--output", metavar="OUT.skin", type=steps.named(".skin"), help="where to write the result (default: back to SKIN)"
     )
     p.add_argument("--sensors", metavar="FILE.toml", type=Path, help="which sensors, and where (default: automatic)")
     p.add_argument("--add", metavar="FILE.toml", type=Path, help="sensors to add to those that are there")
-    p.add_argument("--list", action="store_true", help="say what sensors there are; change nothing")
-    p.add_argument("--patterns", action=_Patterns, help="say what patterns there are and what parameters they take, and exit")
+    p.add_argument("--list", action="store_true", help="say what sensors there are, with their parameters; change nothing")
+    p.add_argument(
+        "--patterns",
+        action="store_true",
+        help="say what patterns there are, and of each parameter its unit, bounds and what it is unless given; needs no SKIN",
+    )
     p.add_argument("--json", action="store_true", help="print one JSON object and nothing else")
     changes = p.add_argument_group("changes", "X and Y are mm of the flat piece, and where the end of the sensor's lower lead lies")
     for option, count, metavar, text in (
@@ -101,25 +105,18 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     p.set_defaults(run=run, edits=[], wrong_usage=p.error)
 
 
-class _Patterns(argparse.Action):
-    """Prints the catalogue, as --version prints the version."""
-
-    def __init__(self, option_strings: Sequence[str], dest: str, **options: Any) -> None:
-        super().__init__(option_strings, dest, nargs=0, **options)
-
-    def __call__(self, parser: argparse.ArgumentParser, *_: Any) -> None:
-        from skinfab.drawings.catalogue import as_text
-
-        print(as_text(), end="")
-        parser.exit()
-
-
 def run(args: argparse.Namespace) -> int:
     """Place or change, check, write, and say what is where."""
     from skinfab.document import load_skin, save_skin
     from skinfab.material import load_material
 
     changes = bool(args.edits or args.add)
+    if args.patterns:
+        if args.skin or changes or args.sensors or args.output or args.list:
+            args.wrong_usage("--patterns lists what there is to place; it goes with --json and nothing else")
+        return _say_patterns(as_json=args.json)
+    if args.skin is None:
+        args.wrong_usage("SKIN is missing: the skin document; --patterns says what patterns there are to place")
     if args.sensors is not None and changes:
         args.wrong_usage("--sensors replaces all sensors, so it does not go with changes; --add FILE adds some")
     if args.list and (changes or args.sensors or args.output):
@@ -139,8 +136,15 @@ def run(args: argparse.Namespace) -> int:
         print(json.dumps({"skin": str(target), "sensors": [_facts(s) for s in skin.sensors], "warnings": list(warnings)}))
         return 0
     for s in skin.sensors:
-        print(_line(s, material, places=args.list or changes))
+        print(_line(s, material, places=args.list or changes, parameters=args.list))
     print(f"{target}: {steps.counted(len(skin.sensors), 'sensor')}")
+    return 0
+
+
+def _say_patterns(*, as_json: bool) -> int:
+    from skinfab.drawings import catalogue
+
+    print(json.dumps(catalogue.as_json()) if as_json else catalogue.as_text(), end="\n" if as_json else "")
     return 0
 
 
@@ -201,15 +205,18 @@ def _facts(sensor: Sensor) -> dict[str, Any]:
     }
 
 
-def _line(sensor: Sensor, material: Material, *, places: bool) -> str:
-    """One sensor for a person to read."""
+def _line(sensor: Sensor, material: Material, *, places: bool, parameters: bool) -> str:
+    """One sensor for a person to read, its parameters as a sensors file takes them."""
     import math
 
     from skinfab.electrical import resistance
+    from skinfab.patterns import registry
 
+    values = registry.parameters(sensor.pattern).items() if parameters else ()
+    params = ", ".join(f"{name} = {str(v).lower() if isinstance(v, bool) else f'{v:g}'}" for name, v in values)
     r = resistance(sensor.path.length, material.ink)
     at = f" at ({sensor.x:.2f}, {sensor.y:.2f}) turned {math.degrees(sensor.angle) % 360:.1f} deg" if places else ""
     return (
         f"{sensor.id}: {sensor.pattern.kind} on {sensor.piece}{at}, channel {sensor.channel}, {sensor.path.length:.1f} mm, "
-        f"{r.median:.0f} kohm ({r.low:.0f} to {r.high:.0f})"
+        f"{r.median:.0f} kohm ({r.low:.0f} to {r.high:.0f})" + (f"; params = {{ {params} }}" if params else "")
     )

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import MISSING, dataclass, fields
 from numbers import Real
 from typing import Any, ClassVar, TypeAlias
 
@@ -47,11 +47,11 @@ class Pattern(ABC):
     Parameters
     ----------
     bead : float, mm
-        Width of the printed bead.
+        Width of the printed bead; at least 0.05.
     gap : float, mm
-        Least distance from bead edge to bead edge.
+        Least distance from bead edge to bead edge; 0 or more.
     pad : float, mm
-        Side of the square contact pad at either terminal; 0 for none.
+        Side of the square contact pad at either terminal; at least 2 bead, or 0 for none.
 
     Attributes
     ----------
@@ -61,6 +61,8 @@ class Pattern(ABC):
         "contact" or "strain": what is placed on faces, or across joints with its span; its first letter begins the ids.
     example : mapping of str to number
         Parameters of a typical one, for the picture; the property tests start from them.
+    least : tuple of str, optional
+        Parameters that must be given where `usual` makes the others from them.
 
     Raises
     ------
@@ -71,6 +73,7 @@ class Pattern(ABC):
     kind: ClassVar[str]
     senses: ClassVar[str]
     example: ClassVar[Mapping[str, float]]
+    least: ClassVar[tuple[str, ...]] = ()
 
     bead: float = 0.785
     gap: float = 0.6
@@ -78,24 +81,49 @@ class Pattern(ABC):
 
     def __post_init__(self) -> None:
         for field in fields(self):
-            value = getattr(self, field.name)
-            if field.type == "bool":
-                if not isinstance(value, bool):
-                    raise InputError(f"{self.kind}: {field.name} is {value!r}; it must be true or false")
-                continue
-            if isinstance(value, bool) or not isinstance(value, Real) or not math.isfinite(value):
-                raise InputError(f"{self.kind}: {field.name} is {value!r}; it must be a finite number")
-            number = float(value)
-            if field.type == "int" and number != round(number):
-                raise PatternError(self.kind, field.name, value, "it is a count and must be whole", round(number))
-            object.__setattr__(self, field.name, round(number) if field.type == "int" else number)
+            value = self.read(field.name, getattr(self, field.name))
+            object.__setattr__(self, field.name, value)
             # Counts are bounded by the lengths, in the pattern's own words.
-            if field.type != "int":
+            if field.type == "float":
                 self._at_most(field.name, LARGEST_PATTERN_MM, "no bed is larger")
         self._at_least("bead", LEAST_BEAD_MM, "no nozzle is finer")
         self._at_least("gap", 0.0, "a distance cannot be negative")
         if self.pad:
             self._at_least("pad", 2 * self.bead, "a pad must be two beads wide, or 0 for none")
+
+    @classmethod
+    def read(cls, name: str, value: Any) -> float | int | bool:
+        """A parameter's value as its type has it: a finite number, whole for a count; true or false for a switch.
+
+        Raises
+        ------
+        InputError
+            It is something else.
+        """
+        kind = next(field.type for field in fields(cls) if field.name == name)
+        if kind == "bool":
+            if not isinstance(value, bool):
+                raise InputError(f"{cls.kind}: {name} is {value!r}; it must be true or false")
+            return value
+        if isinstance(value, bool) or not isinstance(value, Real) or not math.isfinite(value):
+            raise InputError(f"{cls.kind}: {name} is {value!r}; it must be a finite number")
+        number = float(value)
+        if kind == "int" and number != round(number):
+            raise PatternError(cls.kind, name, value, "it is a count and must be whole", round(number))
+        return round(number) if kind == "int" else number
+
+    @classmethod
+    def required(cls) -> tuple[str, ...]:
+        """The parameters that must be given: `least` where the pattern states it, else all without a value of their own."""
+        return cls.least or tuple(field.name for field in fields(cls) if field.default is MISSING)
+
+    @classmethod
+    def usual(cls, given: Mapping[str, Any]) -> dict[str, float]:
+        """What goes with the parameters `given` (those required, and defaults): values for the others, in mm or counts.
+
+        Wherever `given` allows it they keep all bounds, so that an error names what was given.
+        """
+        return {}
 
     @property
     def pitch_min(self) -> float:

@@ -9,13 +9,13 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
 from skinfab.paths import Arc, Line, Path, Point, Segment
 from skinfab.patterns.base import Dimension, Pattern, PatternError
-from skinfab.tolerances import PARAMETER_ROUNDING_MM
+from skinfab.tolerances import LEAST_BEAD_MM, PARAMETER_ROUNDING_MM
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,17 +25,19 @@ class ContactSpiral(Pattern):
     Parameters
     ----------
     n : int
-        Inward half-turns after the outer pair, 1 or more.
+        Inward half-turns after the outer pair; 1 or more, and no more than fit: (s - bead - gap) / (2 x) - 1. Unless given: all that
+        fit, 6 at most.
     x : float, mm
-        Distance of neighbouring centre lines; at least bead + gap.
+        Distance of neighbouring centre lines; at least bead + gap. Unless given: 1.7 to 3.2 as s goes from 15 to 45.
     b : float, mm
-        Distance of the two leads; at least bead + gap, less than s - 2 x.
+        Distance of the two leads; at least bead + gap, at most s - 2 x. Unless given: 1.5 to 8 as s goes from 15 to 45.
     l : float, mm
-        Length of the leads to the outer circle; at least bead + gap, which keeps the pads off the turns.
+        Length of the leads to the outer circle; at least bead + gap, which keeps the pads off the turns. Unless given: 3 to 8 as s
+        goes from 15 to 45.
     s : float, mm
-        Outer diameter. The innermost radius s/2 - (n + 1) x must leave a gap inside the innermost turn.
+        Outer diameter; at least 4 x + bead + gap.
     caps : bool
-        Round the two links, outermost and at the centre, with half-circles of radius x/2 in place of square corners.
+        Half-circles of radius x/2 in place of the two links' square corners, outermost and at the centre; true or false.
 
     Raises
     ------
@@ -56,6 +58,7 @@ class ContactSpiral(Pattern):
     kind: ClassVar[str] = "contact-spiral"
     senses: ClassVar[str] = "contact"
     example: ClassVar[Mapping[str, float]] = {"n": 3, "x": 2.0, "b": 3.0, "l": 6.0, "s": 22.0}
+    least: ClassVar[tuple[str, ...]] = ("s",)
 
     n: int
     x: float
@@ -77,6 +80,17 @@ class ContactSpiral(Pattern):
             bound = f"at s = {self.s:g} and x = {self.x:g} no more than {fitting} half-turn{'s fit' if fitting > 1 else ' fits'}"
             raise PatternError(self.kind, "n", self.n, bound, fitting)
         self._at_most("b", self.s - 2 * self.x, "the upper lead must meet the outer turn: s - 2 x")
+
+    @classmethod
+    def usual(cls, given: Mapping[str, Any]) -> dict[str, float]:
+        """The paper's proportions: its ranges of x, b and l from s = 15 to s = 45, as far as bead and gap allow, and six half-turns."""
+        s, pitch_min = given["s"], given["bead"] + given["gap"]
+        t = min(max((s - 15) / 30, 0.0), 1.0)
+        x, b, l = (max(round(low + t * (high - low), 2), pitch_min) for low, high in ((1.7, 3.2), (1.5, 8.0), (3.0, 8.0)))  # noqa: E741
+        # No more than a given pitch leaves room for.
+        x = given.get("x", x)
+        fitting = cls.half_turns_max(s=s, x=max(x, pitch_min, LEAST_BEAD_MM), pitch_min=pitch_min)
+        return {"n": max(min(fitting, 6), 1), "x": x, "b": max(min(b, s - 2 * x), pitch_min), "l": l}
 
     @staticmethod
     def half_turns_max(*, s: float, x: float, pitch_min: float) -> int:

@@ -45,7 +45,8 @@ def make_pattern(kind: str, params: Mapping[str, Any]) -> Pattern:
     kind : str
         A key of `PATTERNS`.
     params : mapping of str to number
-        By the pattern's own parameter names; `bead`, `gap` and `pad` are known to all of them.
+        By the pattern's own parameter names; `bead`, `gap` and `pad` are known to all of them. Only `Pattern.required`
+        must be there: the others follow from these (`Pattern.usual`).
 
     Raises
     ------
@@ -58,6 +59,8 @@ def make_pattern(kind: str, params: Mapping[str, Any]) -> Pattern:
     --------
     >>> make_pattern("strain-lines", {"l1": 53, "l2": 43, "b": 6}).lines
     4
+    >>> parameters(make_pattern("contact-spiral", {"s": 15, "pad": 0}))
+    {'bead': 0.785, 'gap': 0.6, 'pad': 0.0, 'n': 3, 'x': 1.7, 'b': 1.5, 'l': 3.0, 's': 15.0, 'caps': False}
     """
     if kind not in PATTERNS:
         raise InputError(f"no pattern of kind {kind!r}{_suggest(kind, PATTERNS)}; there are {', '.join(sorted(PATTERNS))}")
@@ -65,12 +68,13 @@ def make_pattern(kind: str, params: Mapping[str, Any]) -> Pattern:
     for name in params:
         if name not in known:
             raise InputError(f"{kind}: unknown parameter {name!r}{_suggest(name, known)}; it knows {', '.join(sorted(known))}")
-    missing = [name for name, f in known.items() if f.default is MISSING and name not in params]
+    cls = PATTERNS[kind]
+    missing = [name for name in cls.required() if name not in params]
     if missing:
-        raise InputError(
-            f"{kind}: parameter {missing[0]!r} is missing; it needs {', '.join(n for n, f in known.items() if f.default is MISSING)}"
-        )
-    return PATTERNS[kind](**params)
+        raise InputError(f"{kind}: parameter {missing[0]!r} is missing; it needs {', '.join(cls.required())}")
+    defaults = {name: f.default for name, f in known.items() if f.default is not MISSING}
+    given = defaults | {name: cls.read(name, value) for name, value in params.items()}
+    return cls(**cls.usual(given) | dict(params))
 
 
 def parameters(pattern: Pattern) -> dict[str, float | int]:

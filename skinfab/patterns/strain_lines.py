@@ -8,12 +8,15 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
 from skinfab.paths import Arc, Line, Path, Point, Segment
 from skinfab.patterns.base import Dimension, Pattern, PatternError
+
+#: From line to line on the paper's two fingers, where bead and gap allow it.
+_PITCH_MM = 2.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -23,13 +26,14 @@ class StrainLines(Pattern):
     Parameters
     ----------
     l1 : float, mm
-        From the terminals to the far end; l1 - l2 is at least bead + gap, which keeps the pads off the turns.
+        From the terminals to the far end; at least l2 + bead + gap, which keeps the pads off the turns.
     l2 : float, mm
-        Length of the meander itself, turns included; more than b / (lines - 1), the height of a turn.
+        Length of the meander itself, turns included; at least b / (lines - 1) + bead, a turn and some straight line. Unless given:
+        nine tenths of l1.
     b : float, mm
-        Distance of the two leads; at least (lines - 1) (bead + gap).
+        Distance of the two leads; at least (lines - 1) (bead + gap). Unless given: 2 from line to line, 6 for four.
     lines : int
-        How many lines, even.
+        How many parallel lines; even, 2 or more.
 
     Raises
     ------
@@ -46,6 +50,7 @@ class StrainLines(Pattern):
     kind: ClassVar[str] = "strain-lines"
     senses: ClassVar[str] = "strain"
     example: ClassVar[Mapping[str, float]] = {"l1": 60.0, "l2": 54.0, "b": 6.0}
+    least: ClassVar[tuple[str, ...]] = ("l1",)
 
     l1: float
     l2: float
@@ -61,6 +66,14 @@ class StrainLines(Pattern):
         # A straight part of no length at all is none that a printer could draw.
         self._at_least("l2", 2 * self._radius + self.bead, "two turns and a bead of straight line")
         self._at_least("l1", self.l2 + self.pitch_min, "l2 and one bead and one gap")
+
+    @classmethod
+    def usual(cls, given: Mapping[str, Any]) -> dict[str, float]:
+        """As on the paper's robot finger, l1 = 60: l2 = 54 and lines 2 mm apart."""
+        gaps, pitch_min = max(given["lines"] - 1, 1), given["bead"] + given["gap"]
+        b = given.get("b", gaps * max(_PITCH_MM, pitch_min))
+        # Long enough for its turns, and otherwise short enough to leave room for the pads.
+        return {"l2": max(min(round(0.9 * given["l1"], 2), given["l1"] - pitch_min), b / gaps + given["bead"]), "b": b}
 
     @property
     def _radius(self) -> float:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -25,17 +25,18 @@ class StrainNeck(Pattern):
     Parameters
     ----------
     l1 : float, mm
-        From the terminals to the body: a corner's radius and at least bead + gap.
+        From the terminals to the body; at least a corner's radius, bead and gap. Unless given: three eighths of l2.
     l2 : float, mm
         Length of the body; at least l3 + bead + gap, which keeps the loops off the neck.
     l3 : float, mm
-        Length of the inner loops, turns included; at least two radii and a bead.
+        Length of the inner loops, turns included; at least two radii and a bead. Unless given: four fifths of l2.
     b1 : float, mm
-        Distance of the two leads; at least bead + gap, and so much less than b2 that the corners fit.
+        Distance of the two leads; at least bead + gap. Unless given: 2.
     b2 : float, mm
-        Width of the body; lines are b2 / (lines - 1) apart, and all radii are half of that.
+        Width of the body: lines are b2 / (lines - 1) apart, and all radii are half of that; at least (lines - 1) (bead + gap), and
+        (lines - 1) / (lines - 3) (b1 + 2 bead), for the corners. Unless given: three tenths of l2.
     lines : int
-        How many lines, even, 4 or more.
+        How many parallel lines; even, 4 or more.
 
     Raises
     ------
@@ -52,6 +53,7 @@ class StrainNeck(Pattern):
     kind: ClassVar[str] = "strain-neck"
     senses: ClassVar[str] = "strain"
     example: ClassVar[Mapping[str, float]] = {"l1": 15.0, "l2": 40.0, "l3": 32.0, "b1": 2.0, "b2": 12.0}
+    least: ClassVar[tuple[str, ...]] = ("l2",)
 
     l1: float
     l2: float
@@ -66,12 +68,26 @@ class StrainNeck(Pattern):
             nearest = max(4, self.lines - self.lines % 2)
             raise PatternError(self.kind, "lines", self.lines, "it must be even and at least 4", nearest)
         self._at_least("b1", self.pitch_min, "one bead and one gap")
-        # What is left of b2 on either side of the leads: two corners, and a bead of straight line between them.
-        corners = (self.lines - 1) / (self.lines - 3) * (self.b1 + 2 * self.bead)
-        self._at_least("b2", max((self.lines - 1) * self.pitch_min, corners), "the lines' pitches, and four corners beside the leads")
+        least = self._least_body(self.lines, self.b1, self.bead, self.gap)
+        self._at_least("b2", least, "the lines' pitches, and four corners beside the leads")
         self._at_least("l1", self._radius + self.pitch_min, "a corner and one bead and one gap")
         self._at_least("l3", 2 * self._radius + self.bead, "two turns and a bead of straight line")
         self._at_least("l2", self.l3 + self.pitch_min, "l3 and one bead and one gap")
+
+    @staticmethod
+    def _least_body(lines: int, b1: float, bead: float, gap: float) -> float:
+        """Least b2, mm: room for the lines, and beside the leads for two corners with a bead of straight line between them."""
+        return max((lines - 1) * (bead + gap), (lines - 1) / (lines - 3) * (b1 + 2 * bead))
+
+    @classmethod
+    def usual(cls, given: Mapping[str, Any]) -> dict[str, float]:
+        """The proportions of the example, a body of 40 mm, as far as bead and gap allow."""
+        l2, bead, pitch_min, lines = given["l2"], given["bead"], given["bead"] + given["gap"], max(given["lines"], 4)
+        b1 = given.get("b1", max(2.0, pitch_min))
+        b2 = given.get("b2", max(round(0.3 * l2, 2), cls._least_body(lines, b1, bead, given["gap"])))
+        radius = b2 / (2 * (lines - 1))
+        l3 = max(min(round(0.8 * l2, 2), l2 - pitch_min), 2 * radius + bead)
+        return {"l1": max(round(0.375 * l2, 2), radius + pitch_min), "l3": l3, "b1": b1, "b2": b2}
 
     @property
     def _radius(self) -> float:

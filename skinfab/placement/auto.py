@@ -15,6 +15,7 @@ from skinfab.errors import InputError
 from skinfab.material import Material
 from skinfab.mesh.model import Mesh
 from skinfab.patterns.contact_spiral import ContactSpiral
+from skinfab.patterns.registry import make_pattern
 from skinfab.patterns.strain_lines import StrainLines
 from skinfab.pieces import Piece
 from skinfab.placement.fill import Region, fill, regions_of
@@ -61,21 +62,16 @@ class AutoOptions:
 
 
 def spiral_of_size(s: float, material: Material) -> ContactSpiral:
-    """A contact spiral of diameter `s` with the paper's proportions.
-
-    Pitch, lead separation and lead length grow over the paper's ranges (1.7-3.2, 1.5-8, 3-8 mm) from s = 15 to
-    s = 45, as far as the material's bead and gap allow; half-turns are as many as fit, six at most.
+    """A contact spiral of diameter `s` with the paper's proportions (`ContactSpiral.usual`), as far as bead and gap allow.
 
     Raises
     ------
     PatternError
         Not even one half-turn fits.
     """
-    bead, gap = material.ink.bead_width, material.gap
-    t = float(np.clip((s - 15) / 30, 0, 1))
-    x, b, l = (max(round(low + t * (high - low), 2), bead + gap) for low, high in ((1.7, 3.2), (1.5, 8.0), (3.0, 8.0)))  # noqa: E741
-    n = max(min(ContactSpiral.half_turns_max(s=s, x=x, pitch_min=bead + gap), 6), 1)
-    return ContactSpiral(n=n, x=x, b=b, l=l, s=s, bead=bead, gap=gap, pad=material.pad)
+    spiral = make_pattern(ContactSpiral.kind, {"s": s, "bead": material.ink.bead_width, "gap": material.gap, "pad": material.pad})
+    assert isinstance(spiral, ContactSpiral)
+    return spiral
 
 
 def place(

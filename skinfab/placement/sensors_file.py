@@ -31,7 +31,8 @@ A list of sensors, each at a place of one's own or wherever it fits, and a table
 
 `point` takes an `angle_deg` too; without one, the direction with the most room is chosen. The bead's width, the
 gap and the pad's side are the material's unless `params` has `bead`, `gap` or `pad`. `along` is the object's long axis
-unless given; `facing` may be left out, and may stand alone: anywhere, but where the surface faces that way.
+unless given; `facing` may be left out, and may stand alone: anywhere, but where the surface faces that way. The least is a
+kind and its size, ``params = { s = 15 }``: other parameters follow from it, and without a pose it goes wherever it fits.
 """
 
 from __future__ import annotations
@@ -159,9 +160,9 @@ def _requests(tables: Sequence[Mapping[str, Any]], where: str, material: Materia
         id = table["id"] if "id" in table else _default_id(table.get("kind"), ids)
         here = f"sensor {k} ({id}) of {where}" if id and isinstance(id, str) else f"sensor {k} of {where}"
         _known(table, ("id", "channel", "kind", "params", "pose"), here)
-        for name in ("kind", "params", "pose"):
+        for name in ("kind", "params"):
             if name not in table:
-                raise InputError(f"{here}: field {name!r} is missing; it needs kind, params and pose")
+                raise InputError(f"{here}: field {name!r} is missing; it needs kind and params")
         if not isinstance(table["kind"], str) or not isinstance(table["params"], dict):
             raise InputError(f"{here}: kind must be a name and params a table such as {{ s = 15 }}")
         try:
@@ -175,7 +176,7 @@ def _requests(tables: Sequence[Mapping[str, Any]], where: str, material: Materia
         channel = _count(table["channel"], "channel", here) if "channel" in table else _next(channels, lambda n: n)
         ids.append(id)
         channels.append(channel)
-        pose = _pose(table["pose"], here)
+        pose = _pose(table.get("pose", "auto"), here)
         if isinstance(pose, Anywhere) and pose.joint is not None and pattern.senses != "strain":
             raise InputError(f"{here}: a {pattern.kind} is not stretched by a joint; give it a point or a direction to face")
         requests.append(Request(here, id, channel, pattern, pose))

@@ -2,6 +2,7 @@
 
 import json
 import re
+import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +10,7 @@ import pytest
 
 from skinfab.cli.main import main
 from skinfab.document import load_skin
-from skinfab.patterns.registry import PATTERNS
+from skinfab.patterns.registry import PATTERNS, make_pattern
 from skinfab.placement.edit import middle_of
 
 ROOT = Path(__file__).parents[2]
@@ -165,7 +166,36 @@ def test_every_pattern_is_listed(capsys: pytest.CaptureFixture[str]) -> None:
     for kind, cls in PATTERNS.items():
         assert re.search(rf"^{kind} \({cls.senses}\): ", said, re.M)
         for name in cls.example:
-            assert re.search(rf"^  {name} +[A-Z]", said, re.M)
+            assert re.search(rf"^  {name} +(mm|count|switch) +[A-Z]", said, re.M)
+    assert main(["place", "--patterns", "--json"]) == 0
+    listed = json.loads(capsys.readouterr().out)
+    assert [entry["kind"] for entry in listed["patterns"]] == list(PATTERNS)
+    spiral = {p["name"]: p for p in listed["patterns"][0]["parameters"]}
+    assert spiral["s"] == {
+        "name": "s", "unit": "mm", "required": True, "default": None, "meaning": "Outer diameter", "bounds": "at least 4 x + bead + gap"
+    }  # fmt: skip
+    assert spiral["caps"]["default"] is False and spiral["n"]["unit"] == "count" and "6 at most" in spiral["n"]["default"]
+    assert {p["name"]: p["default"] for p in listed["common"]} == {"bead": 0.785, "gap": 0.6, "pad": 3.0}
+
+
+@pytest.mark.parametrize("kind", PATTERNS)
+def test_what_is_listed_as_the_least_is_all_a_sensors_file_needs(kind: str, document: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["place", "--patterns"]) == 0
+    (least,) = re.findall(rf"^{kind} .*?^  the least to give:  (params = .*?)$", capsys.readouterr().out, re.M | re.S)
+    wanted = document.with_name("least.toml")
+    wanted.write_text(f'[[sensor]]\nkind = "{kind}"\n{least.replace("60", "40").replace("l2 = 40", "l2 = 22")}\n')
+    assert main(["place", str(document), "--sensors", str(wanted)]) == 0
+    (sensor,) = load_skin(document).sensors
+    assert sensor.pattern.kind == kind
+    assert main(["place", str(document), "--list"]) == 0
+    (params,) = re.findall(r"; params = \{ (.*) \}$", capsys.readouterr().out, re.M)
+    assert make_pattern(kind, tomllib.loads(params.replace(", ", "\n"))) == sensor.pattern
+
+
+def test_wrong_usage_of_patterns_and_a_missing_document(capsys: pytest.CaptureFixture[str]) -> None:
+    for words, says in ((["--patterns", "a.skin"], "nothing else"), (["--list"], "SKIN is missing: the skin document; --patterns says")):
+        assert main(["place", *words]) == 2
+        assert says in capsys.readouterr().err
 
 
 def test_the_user_guides_changes(document: Path, monkeypatch: pytest.MonkeyPatch) -> None:

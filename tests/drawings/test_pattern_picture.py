@@ -6,7 +6,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from skinfab.drawings.catalogue import catalogue
+from skinfab.drawings.catalogue import catalogue, common
 from skinfab.drawings.pattern_picture import pattern_svg
 from skinfab.patterns.registry import PATTERNS, make_pattern
 
@@ -39,6 +39,10 @@ def test_a_dimension_line_is_as_long_as_its_parameter(kind: str) -> None:
 
 def test_the_catalogue_describes_every_parameter() -> None:
     for entry in catalogue():
-        assert entry.summary.endswith(".") and set(entry.parameters) >= set(PATTERNS[entry.kind].example)
+        assert entry.summary.endswith(".") and {p.name for p in entry.parameters} >= set(PATTERNS[entry.kind].example)
+        assert {p.name for p in entry.parameters if p.required} == set(entry.least)
+    for parameter in (*common(), *(p for entry in catalogue() for p in entry.parameters)):
         # A name without a description stands for itself: each must have more.
-        assert all(len(text) > len(name) + 10 for name, text in entry.parameters.items())
+        assert len(parameter.meaning) > len(parameter.name) + 10 and len(parameter.bounds) > 5, parameter
+        assert parameter.unit in ("mm", "count", "switch") and parameter.required == (parameter.default is None)
+        assert parameter.required or parameter.default != ""

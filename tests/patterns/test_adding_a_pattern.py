@@ -47,7 +47,7 @@ def test_without_the_file_there_is_no_such_pattern() -> None:
 def test_the_command_line_lists_it(dropped: dict[str, str]) -> None:
     said = skinfab(dropped, "place", "--patterns").stdout
     assert "\ncontact-spiral (contact)" in f"\n{said}" and "contact-ring (contact): One ring between two leads." in said
-    assert re.search(r"^  d     Diameter of the ring; at least 2 b\.$", said, re.M)
+    assert re.search(r"^  d     mm      Diameter of the ring; at least 2 b\. Must be given\.$", said, re.M)
 
 
 def test_a_sensors_file_takes_it_as_far_as_the_gcode(dropped: dict[str, str], tmp_path: Path) -> None:
@@ -64,7 +64,7 @@ def test_the_property_tests_run_over_it(dropped: dict[str, str]) -> None:
     files = [str(path.relative_to(ROOT)) for path in sorted((ROOT / "tests/patterns").glob("test_every_pattern*.py"))]
     done = run(dropped, "-m", "pytest", "-q", "-p", "drop_in", "-p", "no:cacheprovider", "-p", "no:xdist", *files, "-k", "contact-ring")
     ran = re.search(r"(\d+) passed, \d+ deselected", done.stdout)
-    assert done.returncode == 0 and ran and int(ran[1]) == 8, done.stdout
+    assert done.returncode == 0 and ran and int(ran[1]) == 10, done.stdout
 
 
 def test_two_of_one_kind_are_refused(dropped: dict[str, str], tmp_path: Path) -> None:

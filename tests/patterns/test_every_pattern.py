@@ -10,6 +10,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from random_patterns import fault_of, mended, parameter_sets, patterns
 
+from skinfab.drawings.catalogue import catalogue
 from skinfab.paths import Arc, Line
 from skinfab.patterns.base import Pattern
 from skinfab.patterns.registry import PATTERNS, make_pattern, parameters
@@ -78,6 +79,30 @@ def test_advice_works_and_is_the_nearest(kind: str, data: st.DataObject) -> None
     if isinstance(given_value, float) and abs(back - nearest) < abs(given_value - nearest):
         again = fault_of(kind, {**params, name: back})
         assert again is not None and again.parameter == name
+
+
+@every_pattern
+@thousands
+@given(data=st.data())
+def test_what_is_left_out_breaks_no_bound(kind: str, data: st.DataObject) -> None:
+    params = data.draw(parameter_sets(kind))
+    own = sorted(set(params) - set(PATTERNS[kind].required()))
+    given = {name: value for name, value in params.items() if name not in data.draw(st.sets(st.sampled_from(own)))}
+    fault = fault_of(kind, given)
+    # The common three have values of their own, which a given one may not go with: a pad narrower than two given beads.
+    assert fault is None or fault.parameter in {*given, "pad"}, str(fault)
+    if fault is None:
+        made = parameters(make_pattern(kind, given))
+        assert made.items() >= given.items()
+        assert make_pattern(kind, made) == make_pattern(kind, given)
+
+
+@every_pattern
+def test_every_parameter_is_described(kind: str) -> None:
+    entry = next(entry for entry in catalogue() if entry.kind == kind)
+    for p in entry.parameters:
+        assert p.meaning != p.name and p.bounds, f'{p.name}: write "Meaning; bounds." in the class\'s Parameters'
+        assert p.required or p.default != "", f'{p.name}: end its description with "Unless given: what then."'
 
 
 @every_pattern

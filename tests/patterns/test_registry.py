@@ -22,7 +22,11 @@ def test_equal_parameters_make_equal_patterns(kind: str) -> None:
     [
         ("contact-spirale", {}, "did you mean 'contact-spiral'"),
         ("strain-lines", {"l1": 60, "l2": 54, "b": 6, "line": 4}, "unknown parameter 'line' .did you mean 'lines'"),
-        ("strain-lines", {"l1": 60, "b": 6}, "'l2' is missing; it needs l1, l2, b"),
+        ("strain-lines", {"l2": 54, "b": 6}, "'l1' is missing; it needs l1$"),
+        ("strain-lines", {"l1": "60"}, "l1 is '60'; it must be a finite number"),
+        ("contact-spiral", {"s": 20, "x": [1]}, r"x is \[1\]; it must be a finite number"),
+        ("contact-spiral", {"s": 20, "caps": 1}, "caps is 1; it must be true or false"),
+        ("strain-neck", {"l2": float("nan")}, "l2 is nan; it must be a finite number"),
         ("strain-lines", {"l1": "60", "l2": 54, "b": 6}, "l1 is '60'; it must be a finite number"),
     ],
 )

@@ -22,7 +22,10 @@ def read(tmp_path: Path, text: str) -> object:
 
 def test_the_example_of_the_user_guide(tmp_path: Path) -> None:
     guide = (Path(__file__).parents[2] / "docs" / "sensors.md").read_text(encoding="utf-8")
-    wanted = read(tmp_path, re.search(r"```toml\n(.*?)```", guide, re.S)[1])
+    least, most = re.findall(r"```toml\n(.*?)```", guide, re.S)[:2]
+    (only,) = read(tmp_path, least).requests
+    assert (only.id, only.pose, only.pattern.s, only.pattern.n, only.pattern.x) == ("C1", Anywhere(), 20, 3, 1.95)
+    wanted = read(tmp_path, most)
     assert [(r.id, r.channel) for r in wanted.requests] == [("C1", 0), ("S1", 7), ("C2", 1)]
     assert wanted.requests[0].pose == FlatPose("P1", 12.5, 20.0, math.pi / 2)
     assert wanted.requests[1].pose == Anywhere() and wanted.requests[1].pattern.b == 6
@@ -39,7 +42,7 @@ def test_the_example_of_the_user_guide(tmp_path: Path) -> None:
         ("[sensors]", "unknown field 'sensors' .did you mean 'sensor'"),
         ("a = ", "is not a TOML file"),
         (GOOD.replace("pose", "poses"), r"sensor 1 .C1. of sensors.toml: unknown field 'poses' \(did you mean 'pose'"),
-        (GOOD.replace('pose = "auto"', ""), "field 'pose' is missing"),
+        (GOOD.replace('kind = "contact-spiral"', ""), "field 'kind' is missing; it needs kind and params"),
         (GOOD.replace('"auto"', '"automatic"'), "pose is 'automatic'; it must be"),
         (GOOD.replace('"auto"', "{ x = 3, y = 4 }"), "field 'piece' is missing"),
         (GOOD.replace('"auto"', '{ piece = "P1", x = "3", y = 4 }'), "x is '3'; it must be a number"),
