@@ -5,8 +5,10 @@ from __future__ import annotations
 import argparse
 import json
 from dataclasses import asdict
+from pathlib import Path
 from typing import TYPE_CHECKING
 
+from skinfab.cli.left_over import left_over, say_left_over
 from skinfab.errors import RefusedError
 
 if TYPE_CHECKING:
@@ -53,9 +55,12 @@ def _write(args: argparse.Namespace) -> int:
     printer = load_printer(args.printer) if args.printer else None
     written = write_skin(skin, args.output, arcs=args.arcs, printer=printer)
     previews = write_previews(skin, written, args.output, printer=printer) if args.preview else ()
+    others = left_over(Path(args.output), [*(w.file for w in written), *previews], ".gcode")
     if args.json:
-        print(json.dumps({"gcode": [_described(w) for w in written], "previews": [str(file) for file in previews]}))
+        described = [_described(w) for w in written]
+        print(json.dumps({"gcode": described, "previews": [str(f) for f in previews], "left_over": [str(f) for f in others]}))
         return 0
+    say_left_over(Path(args.output), others)
     for w in written:
         s = w.summary
         x, y = w.plan.offset

@@ -6,6 +6,8 @@ import argparse
 import sys
 from pathlib import Path
 
+from skinfab.cli.left_over import left_over, say_left_over
+
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Register the command."""
@@ -48,6 +50,7 @@ def run(args: argparse.Namespace) -> int:
         print(f"{path}: holds {mould.cavity_ml:.2f} ml; the lower left mark is at ({x:.2f}, {y:.2f}) mm of the piece")
         for warning in mould.warnings:
             print(f"warning: {warning}", file=sys.stderr)
+    say_left_over(args.output, left_over(args.output, [args.output / f"{m.piece}.stl" for m in moulds], ".stl"))
     print()
     printed = {sensor.piece for sensor in skin.sensors}
     jobs = [PrintJob(m.piece, f"{m.piece}.gcode", m.wire_slots) for m in moulds if m.piece in printed]

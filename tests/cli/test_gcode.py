@@ -31,6 +31,22 @@ def document(tmp_path: Path) -> Path:
     return tmp_path / "a.skin"
 
 
+def test_what_is_left_of_another_run_is_named_and_left_alone(document: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "out"
+    assert main(["gcode", str(document), "-o", str(out), "--preview"]) == 0
+    assert "left alone" not in capfd.readouterr().err
+    for name in ("P3.gcode", "P3.svg", "P10.GCODE", "flat.svg", "notes.txt"):
+        (out / name).write_text("old")
+    assert main(["gcode", str(document), "-o", str(out)]) == 0
+    (warned,) = capfd.readouterr().err.splitlines()
+    # Without --preview the picture of P1 is an old one too; pictures that belong to no G-code are none of ours.
+    assert "also holds P1.svg, P3.svg, P3.gcode, P10.GCODE, which are not of this run and were left alone" in warned
+    assert (out / "P3.gcode").read_text() == "old"
+    assert main(["gcode", str(document), "-o", str(out), "--preview", "--json"]) == 0
+    said = capfd.readouterr()
+    assert [Path(f).name for f in json.loads(said.out)["left_over"]] == ["P3.svg", "P3.gcode", "P10.GCODE"] and said.err == ""
+
+
 def test_writes_what_its_own_check_accepts(document: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["gcode", str(document), "-o", str(tmp_path / "out")]) == 0
     file = tmp_path / "out/P1.gcode"

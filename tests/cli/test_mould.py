@@ -79,3 +79,12 @@ def test_output_that_is_a_file(skin: Skin, tmp_path: Path) -> None:
     (tmp_path / "out").write_text("")
     with pytest.raises(InputError, match="cannot write"):
         call(str(tmp_path / "a.skin"), "-o", str(tmp_path / "out"))
+
+
+def test_a_mould_of_another_run_is_named_and_left_alone(skin: Skin, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    save_skin(skin, tmp_path / "a.skin")
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out" / "P7.stl").write_text("old")
+    assert call(str(tmp_path / "a.skin"), "-o", str(tmp_path / "out")) == 0
+    assert "also holds P7.stl, which is not of this run and was left alone" in capsys.readouterr().err
+    assert (tmp_path / "out" / "P7.stl").read_text() == "old"
