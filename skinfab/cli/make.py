@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from skinfab.cli import steps
+from skinfab.cli.alike import alike
 
 if TYPE_CHECKING:
     from gcode.write import PieceGcode
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
 
 Started: TypeAlias = "tuple[Skin, list[Distortion], steps.Profiles, tuple[str, ...]]"
 
-#: Warnings shown on the terminal; the report has all.
+#: Kinds of warnings shown on the terminal; the report has all.
 _SHOWN = 8
 
 
@@ -57,17 +58,18 @@ def run(args: argparse.Namespace) -> int:
         print(json.dumps(report, allow_nan=False))
         return 0
     # What was said on reading is not said again.
-    warnings = report["warnings"][said:]
+    warnings = alike(report["warnings"][said:])
     steps.say(warnings[:_SHOWN], kind="warning")
-    if len(warnings) > _SHOWN:
-        steps.say([f"{len(warnings) - _SHOWN} more warnings are in {args.output / 'report.html'}"], kind="warning")
     d, ink = report["distortion"], sum(g["ink_mm3"] for g in report["gcode"])
     pieces, sensors = steps.counted(len(report["pieces"]), "piece"), steps.counted(len(report["sensors"]), "sensor")
     print(
         f"{args.output}: {pieces}, d mean {d['mean']:.4f}; {sensors}, {ink:.0f} mm^3 of ink, "
         f"printed in {sum(g['time_s'] for g in report['gcode']) / 60:.0f} min; made in {report['timing_s']['total']:.1f} s"
     )
-    print(f"open {args.output / 'report.html'}")
+    # Last of all, so that warnings do not drown it.
+    all_of_them = f", all {len(report['warnings'])} warnings" if len(report["warnings"]) > len(warnings[:_SHOWN]) + said else ""
+    printed = ", G-code and moulds" if report["gcode"] else " and moulds"
+    print(f"{args.output} has the report{printed}; next, open {args.output / 'report.html'}: what to print, weigh and pour{all_of_them}")
     return 0
 
 

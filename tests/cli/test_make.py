@@ -184,6 +184,34 @@ def test_a_document_in_place_of_a_mesh(tmp_path: Path, capfd: pytest.CaptureFixt
     assert "go with a mesh" in capfd.readouterr().err
 
 
+def test_the_terminal_ends_with_the_result_and_tells_warnings_of_a_kind_once(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    # A piece a face, too small for a sensor and for most of its lip.
+    words = ["make", str(ROOT / "meshes/dodecahedron.obj"), "-o", str(tmp_path / "out"), "--cuts", str(_all_edges(tmp_path))]
+    assert main([*words, "--scale", "0.05"]) == 0
+    said = capfd.readouterr()
+    report = results.read_report(tmp_path / "out")
+    warned = [line for line in said.err.splitlines() if line.startswith("warning: ")]
+    alike = [w for w in report["warnings"] if "the adhesive lip has room along" in w]
+    assert len(alike) > 5 and sum("the adhesive lip has room along" in line for line in warned) == 1
+    assert any(line.startswith(f"warning: {len(alike)} pieces, first P") for line in warned)
+    last = said.out.splitlines()[-1]
+    assert "next, open" in last and last.endswith(f"all {len(report['warnings'])} warnings")
+    assert said.out.splitlines()[-2].startswith(f"{tmp_path / 'out'}: {len(report['pieces'])} pieces, d mean")
+
+
+def _all_edges(folder: Path) -> Path:
+    """A cut along every edge that is sharp."""
+    from skinfab.mesh.io import load_mesh
+
+    mesh = load_mesh(ROOT / "meshes/dodecahedron.obj").mesh
+    topology = mesh.topology
+    sides = mesh.face_normals[topology.EF]
+    sharp = topology.E[np.einsum("ij,ij->i", sides[:, 0], sides[:, 1]) < 0.9]
+    path = folder / "cuts.txt"
+    path.write_text("".join(f"{a} {b}\n" for a, b in sharp))
+    return path
+
+
 def test_cuts_by_hand(tmp_path: Path) -> None:
     (tmp_path / "cuts.txt").write_text("0 1\n")
     words = ["make", str(ROOT / "meshes/cube.obj"), "-o", str(tmp_path / "out"), "--cuts", str(tmp_path / "cuts.txt")]
