@@ -12,6 +12,7 @@ from gcode.check_commands import command_findings
 from gcode.check_file import file_findings
 from gcode.check_grbl import grbl_findings
 from gcode.check_height import height_findings
+from gcode.check_ink import ink_findings
 from gcode.check_wall import Wall, wall_findings
 from gcode.emit import emit
 from gcode.geometry import Curve, Straight
@@ -58,6 +59,7 @@ def check_text(text: str, printer: Printer, *, wall: Wall | None = None) -> tupl
         *judged.faults,
         *(grbl_findings(judged) if printer.spindle else command_findings(judged, printer)),
         *height_findings(judged, printer),
+        *ink_findings(judged, printer),
         *(wall_findings(judged, wall, printer.nozzle) if wall else ()),
         *_retracts(judged, "mm^3 of ink" if printer.spindle else "mm of E"),
     ]

@@ -100,7 +100,7 @@ def crosses_ink(run: Shape, laid: Laid, radius: float, *, leaves: bool) -> bool:
             return False
         start = run.point_at(radius / run.length)
     # The chords may lie inside an arc by their tolerance, and places are rounded.
-    return laid.distance((start, run.end)) < radius - PREVIEW_CHORD_MM - STEP_XY
+    return laid.distance((start, run.end), within=radius) < radius - PREVIEW_CHORD_MM - STEP_XY
 
 
 def free_length(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -11,9 +12,9 @@ from gcode.geometry import Curve, Shape
 from skinfab.tolerances import PREVIEW_CHORD_MM
 
 
-def chords(shapes: Sequence[Shape]) -> NDArray[np.float64]:
-    """Shapes as straight pieces, (n, 2, 2) mm; arcs leave theirs by at most ``tolerances.PREVIEW_CHORD_MM``."""
-    pieces = [part for s in shapes for part in (s.chords(PREVIEW_CHORD_MM) if isinstance(s, Curve) else (s,))]
+def chords(shapes: Sequence[Shape], tolerance: float = PREVIEW_CHORD_MM) -> NDArray[np.float64]:
+    """Shapes as straight pieces, (n, 2, 2) mm; arcs leave theirs by at most `tolerance` mm."""
+    pieces = [part for s in shapes for part in (s.chords(tolerance) if isinstance(s, Curve) else (s,))]
     return np.array([(p.start, p.end) for p in pieces]).reshape(-1, 2, 2)
 
 
@@ -38,8 +39,8 @@ class Laid:
         """One more."""
         self._waiting.append(shape)
 
-    def distance(self, run: ArrayLike) -> float:
-        """Least distance of a straight run, (2, 2) mm, from all of it, as `distance`."""
+    def distance(self, run: ArrayLike, *, within: float = np.inf) -> float:
+        """Least distance of a straight run, (2, 2) mm, from all of it, as `distance`; ink further off than `within` may be passed over."""
         if self._waiting:
             new = chords(self._waiting)
             self._waiting = []
@@ -48,7 +49,13 @@ class Laid:
                 self._pieces = np.concatenate([self._pieces[: self._count], np.empty((2 * count - self._count, 2, 2))])
             self._pieces[self._count : count] = new
             self._count = count
-        return distance(run, self._pieces[: self._count])
+        pieces, ends = self._pieces[: self._count], np.asarray(run, dtype=float)
+        if math.isfinite(within):
+            low, high = ends.min(axis=0) - within, ends.max(axis=0) + within
+            for k in range(2):
+                one, other = pieces[:, 0, k], pieces[:, 1, k]
+                pieces = pieces[(np.minimum(one, other) <= high[k]) & (np.maximum(one, other) >= low[k])]
+        return distance(ends, pieces)
 
 
 def distance(run: ArrayLike, pieces: NDArray[np.float64]) -> float:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 import re
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TypeAlias
 
 from gcode.geometry import Curve, Point, Shape, Straight
@@ -70,7 +71,7 @@ class Move:
     speed: float | None
     pattern: str
 
-    @property
+    @cached_property
     def shape(self) -> Shape | None:
         """The motion in the plane; None where there is none or its start is unknown."""
         if self.start[0] is None or self.start[1] is None or self.end[0] is None or self.end[1] is None:
@@ -196,7 +197,7 @@ class _Head:
     def _target(self, command: Command) -> list[float | None]:
         end = list(self.place)
         for k, axis in enumerate("XYZ"):
-            if (value := self._number(command, axis)) is None:
+            if axis not in command.words or (value := self._number(command, axis)) is None:
                 continue
             if self.relative:
                 here = self.place[k]

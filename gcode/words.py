@@ -6,6 +6,7 @@ import math
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 
 from skinfab.errors import InputError
@@ -22,6 +23,10 @@ LINE_LIMIT, FILE_LIMIT = 4096, 256 * 2**20
 
 _COMMAND = re.compile(r"(?:[Nn]\d{1,9}\s*)?([GMT])\s*(\d{1,5})(\.\d{1,3})?(?![\d.])", re.IGNORECASE)
 _WORD = re.compile(r"\s*([A-Z])\s*([-+]?(?:\d+\.?\d*|\.\d+))?", re.IGNORECASE)
+
+#: Words as nearly every line has them, so short that each number is finite.
+_PLAIN = re.compile(r"(?:\s*[A-FH-LN-SU-Z]\s*[-+]?(?:\d{1,99}(?:\.\d{0,99})?|\.\d{1,99}))*\s*")
+_PLAIN_WORD = re.compile(r"([A-Z])\s*([-+.\d]+)")
 _BRACKETS = re.compile(r"\([^()]*\)")
 
 
@@ -84,21 +89,32 @@ def read_commands(text: str) -> Iterator[Command]:
         body, mark, comment = raw.partition(";")
         if len(body) > LINE_LIMIT:
             raise InputError(f"line {line} is {len(body)} characters long; that is not a G-code command")
-        body = _BRACKETS.sub(" ", body).partition("*")[0].strip()
+        if "(" in body:
+            body = _BRACKETS.sub(" ", body)
+        body = body.partition("*")[0].strip()
         if not body or body == "%":
             if mark:
-                yield Command(line, "", {}, comment.strip(), len(raw.encode()))
+                yield Command(line, "", {}, comment.strip(), len(raw if raw.isascii() else raw.encode()))
             continue
         found = _COMMAND.match(body)
         if not found:
             raise InputError(f"line {line}: cannot read {_shown(body)}; a command begins with G, M or T and a number")
-        letter, number, sub = found.groups()
-        code = f"{letter.upper()}{int(number)}{sub or ''}"
+        code = _code(*found.groups())
         words = _words(body[found.end() :], line, code) if code in READ else {}
-        yield Command(line, code, words, comment.strip(), len(raw.encode()))
+        yield Command(line, code, words, comment.strip(), len(raw if raw.isascii() else raw.encode()))
+
+
+@lru_cache(maxsize=1024)
+def _code(letter: str, number: str, sub: str | None) -> str:
+    return f"{letter.upper()}{int(number)}{sub or ''}"
 
 
 def _words(rest: str, line: int, code: str) -> dict[str, float | None]:
+    if _PLAIN.fullmatch(rest):
+        found = _PLAIN_WORD.findall(rest)
+        plain: dict[str, float | None] = {letter: float(number) for letter, number in found}
+        if len(plain) == len(found):
+            return plain
     words: dict[str, float | None] = {}
     at = 0
     while at < len(rest):

@@ -9,7 +9,9 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from gcode import check_ink
 from gcode.check import check_program, check_text
+from gcode.check_ink import ink_findings
 from gcode.clearance import Laid
 from gcode.emit import emit
 from gcode.geometry import Curve, Straight, shape_of
@@ -139,6 +141,36 @@ def test_a_hundred_thousand_segments_are_emitted_checked_and_read(long: Program)
     assert text.count("\n") > 100_000
     assert parse(text) == long
     assert check_text(text, PRINTER) == ()
+
+
+def test_a_heap_of_segments_one_upon_another_is_found_out_in_bounded_memory() -> None:
+    """Asked of one tree of all ink, each of a heap meets all others: 2e8 pairs. Faulty ink is left out after its batch."""
+    heap = [f"G1 X{100 + 2 * (k % 2)} E8 F240" for k in range(1, 20_001)]
+    judged = trace(HEAD + "G0 X100 Y100 F6000\nG0 Z1.6 F300\n" + "\n".join([*heap, "G0 Z10 F300"]))
+    tracemalloc.start()
+    faults = list(ink_findings(judged, PRINTER))
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert [f.line for f in faults] == list(range(10, 20_009))  # all but the first
+    assert peak < 3e8  # the pairs of 1024 pieces, and the findings
+
+
+def test_pieces_shorter_than_the_bead_is_wide_have_few_neighbours_once_joined() -> None:
+    """20 mm in micrometres: each piece has 1500 neighbours within a bead's width, 3e7 pairs in all."""
+    steps = "\n".join(f"G1 X{100 + 0.001 * k:.3f} E0.004 F240" for k in range(1, 20_001))
+    judged = trace(HEAD + "G0 X100 Y100 F6000\nG0 Z1.6 F300\n" + steps + "\nG0 Z10 F300")
+    pairs = 0
+    exact = check_ink._distances
+
+    def counted(pieces, later, earlier):  # type: ignore[no-untyped-def]
+        nonlocal pairs
+        pairs += len(later)
+        return exact(pieces, later, earlier)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(check_ink, "_distances", counted)
+        assert not list(ink_findings(judged, PRINTER))
+    assert 0 < pairs < 2e6
 
 
 def calls_of(work: Callable[[], object]) -> int:
