@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gcode.geometry import Point
-from gcode.printer import Nozzle
+from gcode.printer import Nozzle, Printer
 from gcode.program import XY_DECIMALS
 from gcode.trace import Finding, Move, Trace
 from skinfab.material import Material
@@ -56,14 +56,30 @@ class Wall:
 
 def wall_of(piece: Piece, material: Material, offset: Point) -> Wall:
     """The wall that `skinfab.mould` puts round a piece, with the piece moved by `offset` (mm) onto the bed."""
-    slope = math.tan(math.radians(material.mould.draft_deg))
-    edges = edge_curves(piece).moved(angle=0.0, shift=offset)
-    return Wall(edges, material.depth + FREEBOARD_MM, material.depth / 2, slope)
+    return _wall(edge_curves(piece).moved(angle=0.0, shift=offset), material)
+
+
+def _wall(edges: Curves, material: Material) -> Wall:
+    return Wall(edges, material.depth + FREEBOARD_MM, material.depth / 2, math.tan(math.radians(material.mould.draft_deg)))
 
 
 def needed_room(wall: Wall, nozzle: Nozzle, z: float) -> float:
     """From the nozzle's axis to the piece's edge at the height `z`, mm; 0 above the wall."""
     return nozzle.outer_radius + nozzle.clearance + wall.inward(z) if z < wall.top - _STEP else 0.0
+
+
+def nozzle_margin(printer: Printer, material: Material) -> float:
+    """From a bead's edge to the piece's edge, mm, so that the nozzle that lays the material's bead clears the wall.
+
+    Examples
+    --------
+    >>> from gcode.printer import load_printer
+    >>> from skinfab.material import load_material
+    >>> round(nozzle_margin(load_printer(), load_material()), 4)
+    0.4475
+    """
+    wall = _wall(Curves.of_segments([]), material)
+    return needed_room(wall, printer.nozzle, printer.heights.print) - material.ink.bead_width / 2
 
 
 def wall_findings(judged: Trace, wall: Wall, nozzle: Nozzle) -> Iterator[Finding]:

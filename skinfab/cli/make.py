@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from skinfab.cli import steps
 from skinfab.cli.alike import alike
+from skinfab.cli.nozzle_room import with_room_for_nozzle
 
 if TYPE_CHECKING:
     from gcode.write import PieceGcode
@@ -89,8 +90,9 @@ def _make(args: argparse.Namespace, folder: Path, watch: Stopwatch, progress: Pr
     warnings: list[str] = []
     with watch.phase("place"):
         if args.sensors is not None or not skin.sensors:
-            sensors, warnings = steps.place_sensors(skin, used.material, args.sensors)
-            skin = replace(skin, sensors=sensors)
+            roomy, wider = with_room_for_nozzle(used.material, used.printer)
+            sensors, warnings = steps.place_sensors(skin, roomy, args.sensors)
+            skin, warnings = replace(skin, sensors=sensors), [*wider, *warnings]
     progress(0.75, "writing G-code")
     with watch.phase("gcode"):
         printed = write_skin(skin, folder / "gcode", printer=used.printer) if skin.sensors else ()

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from skinfab.cli import steps
+from skinfab.cli.nozzle_room import with_room_for_nozzle
 
 if TYPE_CHECKING:
     from skinfab.material import Material
@@ -107,6 +108,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 def run(args: argparse.Namespace) -> int:
     """Place or change, check, write, and say what is where."""
+    from gcode.printer import load_printer
     from skinfab.document import load_skin, save_skin
     from skinfab.material import load_material
 
@@ -128,8 +130,9 @@ def run(args: argparse.Namespace) -> int:
     if skin.sensors and not (args.list or changes):
         steps.say([f"the {steps.counted(len(skin.sensors), 'sensor')} that {args.skin} had are placed anew; --list would only show them"])
     if not args.list:
-        sensors, warnings = _changed(skin, material, args) if changes else steps.place_sensors(skin, material, args.sensors)
-        skin = replace(skin, sensors=sensors)
+        roomy, wider = with_room_for_nozzle(material, load_printer(skin.printer))
+        sensors, warnings = _changed(skin, roomy, args) if changes else steps.place_sensors(skin, roomy, args.sensors)
+        skin, warnings = replace(skin, sensors=sensors), [*wider, *warnings]
         save_skin(skin, target)
     steps.say(warnings, kind="warning")
     if args.json:
