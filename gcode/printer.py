@@ -8,11 +8,11 @@ from pathlib import Path
 from types import NoneType
 from typing import Any, get_args, get_type_hints
 
-from gcode.profile import read_profile
+from gcode.profile import Profile, read_profile
+from gcode.profile_check import check_values
 from skinfab.errors import InputError
 
 DEFAULT_PRINTER = "ender5plus-vipro"
-HOME_POLICIES = ("xyz", "xy", "none")
 
 
 @dataclass(frozen=True)
@@ -87,8 +87,8 @@ class Process:
     """How a pattern is entered and left.
 
     `overrun_start` and `overrun_end`: the head moves in the ink's plane without extruding, mm;
-    `print_overrun`: the same while extruding, before the path, mm; `pause`: s after each pattern;
-    `chord_tolerance`: mm, where arcs must be emitted as lines.
+    `print_overrun` and `print_overrun_end`: the same while extruding, before the path and past its end, mm;
+    `pause`: s after each pattern; `chord_tolerance`: mm, where arcs must be emitted as lines.
     """
 
     overrun_start: float
@@ -96,16 +96,23 @@ class Process:
     print_overrun: float
     pause: float
     chord_tolerance: float
+    print_overrun_end: float = 0.0
 
 
 @dataclass(frozen=True)
 class Cleaning:
-    """Where the nozzle is wiped after each pattern (bed frame, mm), for how long (s), and the ink pushed there at first (mm^3)."""
+    """Where the nozzle is cleaned after each pattern (bed frame, mm), for how long (s), and the ink pushed there at first (mm^3).
+
+    `height`: how high the nozzle stands there over the floor of the mould's cavity, mm, that of travel if None, where a
+    person or a brush comes to it; `wipe`: how far it then moves along +x and back at that height, mm.
+    """
 
     x: float
     y: float
     seconds: float
     initial_extrude: float
+    height: float | None = None
+    wipe: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -161,93 +168,45 @@ def load_printer(name: str | Path = DEFAULT_PRINTER) -> Printer:
     >>> load_printer("generic-marlin").bed.height
     200.0
     """
-    data = read_profile(name)
-    printer: Printer = _build(Printer, data, f"printer profile {name}")
-    _check(printer, f"printer profile {name}")
+    profile = read_profile(name)
+    printer: Printer = _build(Printer, profile.data, profile, ())
+    check_values(printer, profile)
     return printer
 
 
-def _build(kind: type, data: Any, where: str) -> Any:
+def _build(kind: type, data: Any, profile: Profile, keys: tuple[str, ...]) -> Any:
     """A dataclass from a TOML table, field by field."""
+    where, whose = profile.where(*keys), profile.taken_over(*keys)
     if not isinstance(data, dict):
-        raise InputError(f"{where}: it is {data!r}; it must be a table of fields")
+        raise InputError(f"{where}: it is {data!r}{whose}; it must be a table of fields")
     expected = get_type_hints(kind)
     if unknown := sorted(data.keys() - expected.keys()):
-        raise InputError(f"{where}: unknown field {unknown[0]!r}; it knows {', '.join(sorted(expected))}")
+        whose = profile.taken_over(*keys, unknown[0])
+        raise InputError(f"{where}: unknown field {unknown[0]!r}{whose}; it knows {', '.join(sorted(expected))}")
     needed = {f.name for f in fields(kind) if f.default is MISSING}
     if missing := sorted(needed - data.keys()):
         raise InputError(f"{where}: field {missing[0]!r} is missing")
-    return kind(**{key: _value(expected[key], value, f"{where}, {key}") for key, value in data.items()})
+    return kind(**{key: _value(expected[key], value, profile, (*keys, key)) for key, value in data.items()})
 
 
-def _value(wanted: Any, value: Any, where: str) -> Any:
+def _value(wanted: Any, value: Any, profile: Profile, keys: tuple[str, ...]) -> Any:
+    said = f"{profile.where(*keys)} is {value!r}{profile.taken_over(*keys)}"
     if wanted is float:
-        return _number(value, where)
+        return _number(value, said)
     if wanted == tuple[float, float]:
         if not isinstance(value, list) or len(value) != 2:
-            raise InputError(f"{where} is {value!r}; it must be two numbers in brackets")
-        return tuple(_number(v, where, signed=True) for v in value)
+            raise InputError(f"{said}; it must be two numbers in brackets")
+        return tuple(_number(v, said, signed=True) for v in value)
     if wanted in (bool, str):
         if not isinstance(value, wanted):
-            raise InputError(f"{where} is {value!r}; it must be {'true or false' if wanted is bool else 'a text in quotes'}")
+            raise InputError(f"{said}; it must be {'true or false' if wanted is bool else 'a text in quotes'}")
         return value
-    (table,) = [kind for kind in get_args(wanted) if kind is not NoneType] or [wanted]  # an optional table is a union with None
-    return _build(table, value, where)
+    if NoneType in get_args(wanted):  # what may be left out is a union with None
+        return _value(get_args(wanted)[0], value, profile, keys)
+    return _build(wanted, value, profile, keys)
 
 
-def _number(value: Any, where: str, *, signed: bool = False) -> float:
+def _number(value: Any, said: str, *, signed: bool = False) -> float:
     if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value) or (value < 0 and not signed):
-        raise InputError(f"{where} is {value!r}; it must be a number{'' if signed else ', zero or more'}")
+        raise InputError(f"{said}; it must be a number{'' if signed else ', zero or more'}")
     return float(value)
-
-
-def _check(printer: Printer, where: str) -> None:
-    """Refuse values that contradict each other."""
-    h, m, p = printer.heights, printer.motion, printer.pump
-    positive = {
-        "bed, size": min(printer.bed.size),
-        "bed, height": printer.bed.height,
-        "process, chord_tolerance": printer.process.chord_tolerance,
-        **{f"motion, {f.name}": getattr(m, f.name) for f in fields(m)},
-        **{f"pump, {k}": getattr(p, k) for k in ("e_per_mm3", "max_e", "max_e_speed", "flow_max", "prime_rate")},
-        **({f"spindle, {f.name}": getattr(printer.spindle, f.name) for f in fields(printer.spindle)} if printer.spindle else {}),
-    }
-    for key, value in positive.items():
-        if not value > 0:
-            raise InputError(f"{where}, {key} is {value:g}; it must be more than zero")
-    if printer.home not in HOME_POLICIES:
-        raise InputError(f"{where}, home is {printer.home!r}; it must be one of {', '.join(HOME_POLICIES)}")
-    for name, place in (("cleaning", printer.cleaning), ("park", printer.park)):
-        if place and not (place.x <= printer.bed.size[0] and place.y <= printer.bed.size[1]):
-            raise InputError(
-                f"{where}, {name} is at {place.x:g}, {place.y:g}; the bed is {printer.bed.size[0]:g} x {printer.bed.size[1]:g} mm, "
-                "name a place on it, beside the largest mould"
-            )
-    if not h.print_min <= h.print <= h.print_max < h.travel <= printer.bed.height:
-        raise InputError(f"{where}, heights: print_min <= print <= print_max < travel <= bed height must hold, in mm")
-    if not p.flow_min <= p.flow_max:
-        raise InputError(f"{where}, pump: flow_min {p.flow_min:g} is above flow_max {p.flow_max:g} mm^3/s")
-    if printer.spindle:
-        _check_grbl(printer, printer.spindle, where)
-    elif math.isinf(p.max_e) or math.isinf(p.max_e_speed):
-        missing = "max_e" if math.isinf(p.max_e) else "max_e_speed"
-        raise InputError(f"{where}, pump: field {missing!r} is missing; only a pump that is a [spindle] goes without")
-    if p.prime != p.retract:
-        raise InputError(
-            f"{where}, pump: prime {p.prime:g} and retract {p.retract:g} mm^3 differ; a pattern must end as it began, make them equal"
-        )
-
-
-def _check_grbl(printer: Printer, spindle: Spindle, where: str) -> None:
-    p = printer.pump
-    if printer.home != "none":
-        raise InputError(
-            f"{where}, home is {printer.home!r}; GRBL homes by $H, which is no G-code: home before the start and say 'none' here"
-        )
-    if (p.e_per_mm3, p.max_e, p.max_e_speed) != (1.0, math.inf, math.inf):
-        raise InputError(f"{where}, pump: a pump that is a spindle has no E axis; take out e_per_mm3, max_e and max_e_speed")
-    if (fastest := max(p.flow_max, p.prime_rate)) * spindle.s_per_flow > spindle.s_max:
-        raise InputError(
-            f"{where}: {fastest:g} mm^3/s asks for S{fastest * spindle.s_per_flow:g}, above spindle, s_max {spindle.s_max:g}; "
-            "lower pump, flow_max and prime_rate, or s_per_flow"
-        )

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import tomllib
+from collections.abc import Iterator
+from dataclasses import dataclass
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -10,7 +12,44 @@ from typing import Any
 from skinfab.errors import InputError
 
 
-def read_profile(name: str | Path) -> dict[str, Any]:
+@dataclass(frozen=True)
+class Profile:
+    """The tables of a profile, those of its parents filled in.
+
+    Parameters
+    ----------
+    name : str
+        What it was asked for by.
+    data : dict
+        Its tables.
+    source : str
+        The profile itself, as its parents are named in `sources`.
+    sources : dict
+        Which profile each field was said in, by its keys, such as ``("park", "x")``.
+    """
+
+    name: str
+    data: dict[str, Any]
+    source: str
+    sources: dict[tuple[str, ...], str]
+
+    def where(self, *keys: str) -> str:
+        """A field as an error names it."""
+        return ", ".join([f"printer profile {self.name}", *keys])
+
+    def taken_over(self, *keys: str) -> str:
+        """Which parent a field was said in, in brackets; nothing where the profile says it itself.
+
+        Examples
+        --------
+        >>> Profile("own.toml", {}, "own.toml", {("park", "x"): "generic-marlin"}).taken_over("park", "x")
+        ' (taken over from generic-marlin)'
+        """
+        source = self.sources.get(keys, self.source)
+        return "" if source == self.source else f" (taken over from {source})"
+
+
+def read_profile(name: str | Path) -> Profile:
     """The tables of a bundled profile, by name, or of any TOML file, by path, those of its parents filled in.
 
     What a profile says itself counts; what it leaves out is its parent's, field by field. A parent is named as a
@@ -23,11 +62,12 @@ def read_profile(name: str | Path) -> dict[str, Any]:
 
     Examples
     --------
-    >>> read_profile("generic-marlin")["bed"]["height"]
+    >>> read_profile("generic-marlin").data["bed"]["height"]
     200
     """
     chain: list[str] = []
     found: dict[str, Any] = {}
+    sources: dict[tuple[str, ...], str] = {}
     wanted: str | Path | None = name
     while wanted is not None:
         try:
@@ -41,7 +81,9 @@ def read_profile(name: str | Path) -> dict[str, Any]:
         chain.append(source)
         wanted = _parent(data.pop("extends", None), source)
         found = _filled(found, data)
-    return found
+        for keys in _fields(data):
+            sources.setdefault(keys, source)
+    return Profile(str(name), found, chain[0], sources)
 
 
 def bundled_printers() -> tuple[str, ...]:
@@ -86,3 +128,11 @@ def _filled(own: dict[str, Any], parent: dict[str, Any]) -> dict[str, Any]:
         if isinstance(own[key], dict) and isinstance(parent[key], dict)
     }
     return {**parent, **own, **both}
+
+
+def _fields(data: dict[str, Any], above: tuple[str, ...] = ()) -> Iterator[tuple[str, ...]]:
+    """Keys of all tables and fields."""
+    for key, value in data.items():
+        yield (*above, key)
+        if isinstance(value, dict):
+            yield from _fields(value, (*above, key))

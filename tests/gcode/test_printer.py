@@ -36,7 +36,25 @@ def test_a_file_of_ones_own(tmp_path: Path) -> None:
 def test_the_cleaning_place_is_on_the_bed(tmp_path: Path, x: float, y: float) -> None:
     own = tmp_path / "mine.toml"
     own.write_text(SOURCE + f"\n[cleaning]\nx = {x}\ny = {y}\nseconds = 3\ninitial_extrude = 2.5\n", encoding="utf-8")
-    with pytest.raises(InputError, match="cleaning, x is -1" if x < 0 else rf"cleaning is at {x}, {y}; the bed is 350 x 350 mm"):
+    says = "cleaning, x is -1" if x < 0 else f"cleaning, {'x' if x > 350 else 'y'} is {max(x, y)}, and bed, size is 350 x 350 mm"
+    with pytest.raises(InputError, match=says):
+        load_printer(own)
+
+
+@pytest.mark.parametrize(
+    ("more", "says"),
+    [
+        ("height = 12", "cleaning, height is 12 mm, and heights, travel is 10 mm: .* at most 10, or raise travel"),
+        ("height = -1", "cleaning, height is -1; it must be a number, zero or more"),
+        ("height = 'low'", "cleaning, height is 'low'; it must be a number"),
+        ("wipe = 10", "cleaning, wipe is 10 mm, and there is no height: it would wipe nothing; say height under .cleaning. in mine.toml"),
+        ("height = 5\nwipe = 346", "cleaning, wipe is 346 and cleaning, x is 5, so the nozzle is wiped up to x = 351, .* at most 4"),
+    ],
+)
+def test_the_cleaning_height_is_the_machines(tmp_path: Path, more: str, says: str) -> None:
+    own = tmp_path / "mine.toml"
+    own.write_text(SOURCE + f"\n[cleaning]\nx = 5\ny = 6\nseconds = 3\ninitial_extrude = 2.5\n{more}\n", encoding="utf-8")
+    with pytest.raises(InputError, match=says):
         load_printer(own)
 
 
@@ -57,8 +75,12 @@ def test_the_cleaning_place_is_on_the_bed(tmp_path: Path, x: float, y: float) ->
         ("[bed]", "bed = 3\n[bad]", "unknown field 'bad'"),
         ("retract = 0.2", "retract = 0.4", "make them equal"),
         ("travel = 10", "travel = 1.65", "heights"),
-        ("flow_min = 0.5", "flow_min = 50", "flow_min 50 is above flow_max"),
-        ("y = 345", "y = 351", "park is at 5, 351; the bed is 350 x 350 mm"),
+        (
+            "flow_min = 0.5",
+            "flow_min = 50",
+            "pump, flow_min is 50, above pump, flow_max is 3 mm^3/s; say flow_min under [pump] in mine.toml",
+        ),
+        ("y = 345", "y = 351", "park, y is 351, and bed, size is 350 x 350 mm; say y under [park] in mine.toml: at most 350"),
         ("x = 5 ", "x = -5 ", "park, x is -5"),
         ("[bed]", "[bed", "not a TOML file"),
     ],

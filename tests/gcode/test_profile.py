@@ -62,4 +62,66 @@ def test_bad_parents_are_refused(tmp_path: Path, first: str, second: str, says: 
 
 def test_every_bundled_profile_is_whole_by_name() -> None:
     assert bundled_printers() == ("ender5plus-vipro", "generic-grbl", "generic-marlin")
-    assert {read_profile(name)["name"] for name in bundled_printers()} == {load_printer(name).name for name in bundled_printers()}
+    assert {read_profile(name).data["name"] for name in bundled_printers()} == {load_printer(name).name for name in bundled_printers()}
+
+
+LARGE = 'extends = "generic-marlin"\n[bed]\nsize = [300, 300]\nheight = 300\n[heights]\ntravel = 250\n'
+CLEANS = LARGE + "[cleaning]\nx = 280\ny = 20\nseconds = 3\ninitial_extrude = 1\nheight = 5\nwipe = 15\n"
+
+
+@pytest.mark.parametrize(
+    ("parent", "own", "says"),
+    [
+        (
+            'extends = "generic-marlin"',
+            "[bed]\nsize = [150, 150]",
+            "park, y is 195 (taken over from generic-marlin), and bed, size is 150 x 150 mm; "
+            "say y under [park] in own.toml: at most 150, on the bed and beside the largest mould",
+        ),
+        (
+            'extends = "ender5plus-vipro"\n[park]\nx = 300',
+            "[bed]\nsize = [150, 400]",
+            "park, x is 300 (taken over from FOLDER/parent.toml), and bed, size is 150 x 400 mm; "
+            "say x under [park] in own.toml: at most 150",
+        ),
+        (
+            CLEANS,
+            "[bed]\nsize = [200, 200]",
+            "cleaning, x is 280 (taken over from FOLDER/parent.toml), and bed, size is 200 x 200 mm; say x under [cleaning] in own.toml",
+        ),
+        (
+            CLEANS,
+            "[bed]\nsize = [290, 300]",
+            "cleaning, wipe is 15 (taken over from FOLDER/parent.toml) and cleaning, x is 280 (taken over from FOLDER/parent.toml), "
+            "so the nozzle is wiped up to x = 295, and bed, size is 290 x 300 mm; say x under [cleaning] in own.toml: at most 275",
+        ),
+        (CLEANS, "[heights]\ntravel = 4", "cleaning, height is 5 (taken over from FOLDER/parent.toml) mm, and heights, travel is 4 mm"),
+        (LARGE, "[bed]\nheight = 100", "heights, travel is 250 (taken over from FOLDER/parent.toml) mm, and bed, height is 100 mm"),
+        (LARGE, "[heights]\nprint = 5", "heights, print is 5 mm, and heights, print_max is 3 (taken over from generic-marlin) mm"),
+        (LARGE, "[pump]\nflow_max = 0.05", "pump, flow_min is 0.1 (taken over from generic-marlin), above pump, flow_max is 0.05 mm^3/s"),
+        (LARGE, "[pump]\nprime = 0.1", "pump, prime is 0.1 and pump, retract is 0.5 (taken over from generic-marlin) mm^3;"),
+        (LARGE, "[spindle]\ns_per_flow = 1\ns_max = 9", "home is 'xy' (taken over from generic-marlin); GRBL homes by $H"),
+        (
+            LARGE,
+            'home = "none"\n[spindle]\ns_per_flow = 1\ns_max = 9',
+            "pump, max_e is 200 (taken over from generic-marlin); a pump that is a spindle has no E axis",
+        ),
+        (
+            'extends = "generic-grbl"',
+            "[spindle]\ns_max = 255",
+            "pump, flow_max is 10 (taken over from generic-grbl) mm^3/s, which asks for S1000 as spindle, s_per_flow is 100 "
+            "(taken over from generic-grbl), and spindle, s_max is 255; say flow_max under [pump] in own.toml: at most 2.55",
+        ),
+        (LARGE + "[motion]\nz_speed = 0", "", "motion, z_speed is 0 (taken over from FOLDER/parent.toml); it must be more than zero"),
+        (LARGE + "[motion]\nz_speed = '5'", "", "motion, z_speed is '5' (taken over from FOLDER/parent.toml); it must be a number"),
+        (LARGE + "[motion]\nzspeed = 5", "", "motion: unknown field 'zspeed' (taken over from FOLDER/parent.toml); it knows"),
+        ('extends = "generic-marlin"\nbed = 3', "", "bed: it is 3 (taken over from FOLDER/parent.toml); it must be a table"),
+    ],
+)
+def test_a_contradiction_says_which_profile_each_value_was_taken_over_from(tmp_path: Path, parent: str, own: str, says: str) -> None:
+    write(tmp_path / "parent.toml", parent)
+    top = 'extends = "parent.toml"\n'
+    with pytest.raises(InputError) as fault:
+        load_printer(write(tmp_path / "own.toml", top + own))
+    assert says.replace("FOLDER", str(tmp_path)) in str(fault.value)
+    assert str(fault.value).startswith(f"printer profile {tmp_path / 'own.toml'}")
