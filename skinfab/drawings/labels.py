@@ -33,6 +33,12 @@ _FARTHEST_MM = 15.0
 #: How far off the next piece on the sheet is at least, see `skinfab.drawings.sheet.sheet_offsets`.
 _NEXT_MM = 10.0
 
+#: A seam's number is this far from its seam where it is not at the end of the notch, so far from the notch at most, and stands
+#: outside of the piece where inside there is room only this much farther along, mm.
+_OFF_SEAM_MM = 2.4
+_ALONG_MM = 30.0
+_OUTSIDE_MM = 3.0
+
 #: A name on the far side of the pads is as good as one behind them this much farther off, mm.
 _BEHIND_MM = 4.0
 
@@ -49,6 +55,8 @@ class Label:
         Its middle, or the middle of its left end where `left`.
     height : float, mm
     left : bool
+    over_ink : bool
+        It lies on a conductor for want of room, and needs white behind it.
     """
 
     kind: Literal["piece", "size", "sensor", "seam"]
@@ -56,6 +64,7 @@ class Label:
     at: Point
     height: float = TEXT_MM
     left: bool = False
+    over_ink: bool = False
 
     @property
     def width(self) -> float:
@@ -71,8 +80,9 @@ class Label:
 def piece_labels(piece: Piece, sides: Sequence[SeamSide], sensors: Sequence[Sensor]) -> list[Label]:
     """The words of one piece, in its frame.
 
-    A sensor's name stands behind its pads, clear of all ink. A seam's number stands at its notch, inside the piece
-    or else outside; it is left out where it would cover another word, or where the seam is shorter than the number.
+    A sensor's name stands behind its pads, clear of all ink. A seam's number stands at its notch, or as near to it along
+    the seam as it is clear of all ink, inside the piece or else outside; it is left out where it would cover another word,
+    or where the seam is shorter than the number.
 
     Parameters
     ----------
@@ -132,13 +142,47 @@ def _sensor(sensor: Sensor, inside: shapely.Polygon, ink: shapely.MultiLineStrin
 
 
 def _seam(side: SeamSide, inside: shapely.Polygon, ink: shapely.MultiLineString, bead: float, there: Sequence[Label]) -> Label | None:
+    """Beside the seam, at its notch or as near to that as it covers nothing: inside the piece rather than outside."""
     length = float(np.hypot(*np.diff(side.points, axis=0).T).sum())
-    within = Label("seam", side.label, side.notch + (NOTCH_MM + 0.6 * TEXT_MM) * side.inward)
-    if not side.label or length < within.width:
+    notched = Label("seam", side.label, side.notch + (NOTCH_MM + 0.6 * TEXT_MM) * side.inward)
+    if not side.label or length < notched.width:
         return None
-    outside = Label("seam", side.label, side.notch - 0.8 * TEXT_MM * side.inward)
-    words = shapely.MultiPolygon([label.box for label in there]).buffer(0)
-    free = [label for label in (within, outside) if not label.box.intersects(words)]
-    # Outside may be the other flank of a dart, and inside a sensor: better over ink than nowhere, for it has a halo.
-    off = [label for label in free if not label.box.distance(ink) < bead / 2 and (label is within or not label.box.intersects(inside))]
-    return next(iter([*off, *(label for label in free if label is within)]), None)
+    places, inward, away = _beside(side)
+    ins, outs = places + _OFF_SEAM_MM * inward, places - _OFF_SEAM_MM * inward
+    at = np.vstack([notched.at[None], ins, side.notch - _OFF_SEAM_MM * side.inward[None], outs])
+    cost = np.concatenate([[0.0], away, [_OUTSIDE_MM], away + _OUTSIDE_MM])
+    is_in = np.arange(len(at)) <= len(ins)
+    order = np.argsort(cost.round(6), kind="stable")
+    at, is_in = at[order], is_in[order]
+    half = np.array([notched.width, notched.height]) / 2
+    boxes = shapely.box(*(at - half).T, *(at + half).T)
+    free = ~shapely.intersects(boxes, shapely.MultiPolygon([label.box for label in there]).buffer(0))
+    shapely.prepare(ink)
+    off_ink = np.asarray(~shapely.dwithin(ink, boxes, bead / 2 + _CLEAR_MM))
+    # Over no outline: outside may be the other flank of a dart.
+    beside = np.where(is_in, shapely.contains(inside, boxes), shapely.disjoint(inside, boxes))
+    # Better over a line than over ink, and better over ink than nowhere, on white.
+    for fits in (free & off_ink & beside, free & off_ink & is_in, free & is_in):
+        if fits.any():
+            best = int(np.argmax(fits))
+            return Label("seam", side.label, at[best], over_ink=not off_ink[best])
+    return None
+
+
+def _beside(side: SeamSide) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """Places along a seam, (k, 2) mm, the directions into the piece there, and how far from the notch they are, mm."""
+    steps = np.diff(side.points, axis=0)
+    lengths = np.hypot(*steps.T)
+    along = np.concatenate([[0.0], np.cumsum(lengths)])
+    ahead = steps / np.maximum(lengths, np.finfo(float).tiny)[:, None]
+    from_start = side.notch - side.points[:-1]
+    on_step = np.clip(np.sum(from_start * ahead, axis=1), 0, lengths)
+    k = int(np.argmin(np.hypot(*(from_start - on_step[:, None] * ahead).T)))
+    notch = along[k] + on_step[k]
+    # Not so near to the ends that a number would stand for the next seam.
+    low, high = max(notch - _ALONG_MM, TEXT_MM / 2), min(notch + _ALONG_MM, along[-1] - TEXT_MM / 2)
+    t = np.arange(low, high, 0.5)
+    on = np.clip(np.searchsorted(along, t, side="right") - 1, 0, len(steps) - 1)
+    places = side.points[on] + (t - along[on])[:, None] * ahead[on]
+    # The outline is counter-clockwise.
+    return places, np.stack([-ahead[on][:, 1], ahead[on][:, 0]], axis=1), np.abs(t - notch)

@@ -209,6 +209,8 @@ class _Drawing:
         if self.mould is not None:
             self._draw_mould(pen, self.mould)
         for label in self.labels:
+            if label.over_ink:
+                pen.region(np.array(label.box.exterior.coords)[:-1], "white")
             pen.text(label.text, label.at, label.height, _COLOUR[label.kind], left=label.left)
         for each in wire_pads(self.sensors):
             pen.text(str(each.terminal), each.at, SMALL_MM, "white")

@@ -4,16 +4,21 @@ from __future__ import annotations
 
 from dataclasses import replace
 from itertools import combinations
+from pathlib import Path
 
 import numpy as np
 import pytest
 import shapely
 
+from skinfab.cli.main import main
+from skinfab.document import load_skin
 from skinfab.drawings.labels import CROSS_MM, Label, origin_cross, piece_labels
 from skinfab.drawings.seam_sides import SeamSide, seam_sides
 from skinfab.pieces import Piece
 from skinfab.skin import Skin
 from skinfab.wire_exits import wire_pads
+
+ROOT = Path(__file__).parents[2]
 
 
 def plate(w: float, h: float) -> Piece:
@@ -66,6 +71,45 @@ def test_a_number_steps_outside_where_ink_is_inside(skin: Skin) -> None:
     (plain,) = (label for label in piece_labels(plate(60, 30), [seam], []) if label.kind == "seam")
     (number,) = (label for label in piece_labels(plate(60, 30), [seam], [sensor]) if label.kind == "seam")
     assert plain.at[1] > 0 > number.at[1]
+
+
+def test_a_number_moves_along_its_seam_where_ink_is_at_the_notch(skin: Skin) -> None:
+    sensor = replace(skin.sensors[1], piece="P1", x=8.0, y=1.2, angle=0.0)
+    reach = sensor.printed_path.bbox[1][0]
+    seam = replace(side("1", (0, 0), (60, 0)), notch=np.array([reach + 1.0, 0.0]))
+    (number,) = (label for label in piece_labels(plate(60, 30), [seam], [sensor]) if label.kind == "seam")
+    ink = shapely.LineString(sensor.printed_path.to_polyline(tolerance=0.01))
+    # Still inside, a little further on, rather than outside.
+    assert 0 < number.at[1] < 5 and 0 < number.at[0] - seam.notch[0] < 4
+    assert number.box.distance(ink) > sensor.pattern.bead / 2 and not number.over_ink
+
+
+def test_a_number_that_has_to_lie_on_ink_gets_white_behind_it(skin: Skin) -> None:
+    sensor = replace(skin.sensors[1], piece="P1", x=-2.0, y=6.0, angle=0.0)
+    # The flank of a dart that is too narrow for a number, along nothing but a sensor.
+    narrow = Piece("P1", np.arange(2), np.arange(4), np.array([[0, 1, 2], [0, 2, 3]]), np.array([[8.0, 0], [12, 0], [12, 30], [8, 30]]))
+    seam = side("1", (10, 4), (10, 8))
+    (number,) = (label for label in piece_labels(narrow, [seam], [sensor]) if label.kind == "seam")
+    ink = shapely.LineString(sensor.printed_path.to_polyline(tolerance=0.01))
+    assert number.box.distance(ink) < sensor.pattern.bead / 2 + 0.4 and number.over_ink
+
+
+@pytest.mark.parametrize(("name", "least", "most"), [("cup", 25, 1), ("robot_finger", 4, 0)])
+def test_numbers_of_a_whole_skin_keep_off_its_conductors(name: str, least: int, most: int, tmp_path: Path) -> None:
+    assert main(["segment", str(ROOT / f"meshes/{name}.obj"), "-o", str(tmp_path / "a.skin")]) == 0
+    assert main(["place", str(tmp_path / "a.skin")]) == 0
+    whole = load_skin(tmp_path / "a.skin")
+    sides, numbers, over = seam_sides(whole.pieces), 0, 0
+    for k, piece in enumerate(whole.pieces):
+        sensors = whole.sensors_on(piece.id)
+        ink = shapely.MultiLineString([s.printed_path.to_polyline(tolerance=0.01) for s in sensors])
+        labels = [label for label in piece_labels(piece, [s for s in sides if s.piece == k], sensors) if label.kind == "seam"]
+        numbers += len(labels)
+        for label in labels if sensors else ():
+            assert label.over_ink or label.box.distance(ink) > max(s.pattern.bead for s in sensors) / 2
+            over += label.over_ink
+    # On the cup a dart runs so close along a sensor that neither side of it has room.
+    assert numbers >= least and over <= most
 
 
 @pytest.mark.parametrize(("w", "texts"), [(40.0, ["P1", "40.0 x 9.0 mm"]), (11.9, ["P1", "11.9 x 9.0"]), (4.0, ["P1"])])
