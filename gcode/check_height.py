@@ -19,7 +19,7 @@ def height_findings(judged: Trace, printer: Printer) -> Iterator[Finding]:
     """Findings about heights, in the order of the moves.
 
     A low travel is accepted as an overrun only: straight into or out of an extrusion, no longer than the profile's
-    own, and clear of all ink but the bead it leaves.
+    own, and clear of all ink but the bead it leaves; or along the wiping of the cleaning place, at its height.
     """
     laid = Laid()
     for k, move in enumerate(judged.moves):
@@ -67,7 +67,7 @@ def _low_travel(move: Move, low: float, before: Move | None, after: Move | None,
     shape = move.shape
     process = printer.process
     allowed = process.overrun_end if before is not None else process.overrun_start if _enters(after) else 0.0
-    if shape is None:
+    if shape is None or at_cleaning_place(move, low, printer):
         return
     remedy = f"lift to Z{printer.heights.travel:g} before moving on"
     if shape.length > allowed + 2 * STEP_XY:
@@ -75,6 +75,20 @@ def _low_travel(move: Move, low: float, before: Move | None, after: Move | None,
         return
     if crosses_ink(shape, laid, bead_radius(before or after, printer), leaves=before is not None):
         yield Finding(move.line, f"it drags the nozzle through wet ink at Z{low:.4f}", "shorten the overrun, or " + remedy, move.pattern)
+
+
+def at_cleaning_place(move: Move, low: float, printer: Printer) -> bool:
+    """Is it a wipe at the cleaning place, not below its height? `low` is the move's lowest place, mm."""
+    place, (x, y) = printer.cleaning, printer.bed.origin
+    if place is None or place.height is None or low < place.height - STEP_XY:
+        return False
+    return all(
+        end[0] is not None
+        and end[1] is not None
+        and -STEP_XY <= end[0] - x - place.x <= place.wipe + STEP_XY
+        and abs(end[1] - y - place.y) <= STEP_XY
+        for end in (move.start, move.end)
+    )
 
 
 def _enters(after: Move | None) -> bool:

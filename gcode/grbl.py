@@ -18,7 +18,7 @@ from dataclasses import replace
 
 from gcode.geometry import Curve, Shape
 from gcode.printer import Spindle
-from gcode.program import XY_DECIMALS, Clean, Dwell, Extrude, InkGrid, Prime, Program, Retract, Step, Travel, speed_on_grid
+from gcode.program import CLEAN, XY_DECIMALS, Clean, Dwell, Extrude, InkGrid, Prime, Program, Retract, Step, Travel, speed_on_grid
 from skinfab.tolerances import SPINDLE_FRACTION
 
 #: Digits of the greatest S, and decimals of F: GRBL reads eight digits of a number into a float of 32 bits, which holds seven.
@@ -124,7 +124,7 @@ class GrblWriter:
             self.pump = "M5"
             return [f"{code} {self._rate(step.rate)}", dwell, "M5"]
         if isinstance(step, (Dwell, Clean)):
-            note = " ; clean" if isinstance(step, Clean) else ""
+            note = f" ; {CLEAN}" if isinstance(step, Clean) else ""
             return [*self._turn("M5"), f"G4 P{step.seconds:.3f}{note}"]
         return [f"; {step.text}"]
 

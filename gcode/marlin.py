@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from gcode.geometry import Curve
-from gcode.program import E_DECIMALS, F_DECIMALS, XY_DECIMALS, Clean, Dwell, Extrude, Prime, Program, Retract, Step, Travel
+from gcode.program import CLEAN, E_DECIMALS, F_DECIMALS, XY_DECIMALS, Clean, Dwell, Extrude, Prime, Program, Retract, Step, Travel
 
 #: G90 also makes E absolute, so M83 comes after it; M302 since there is no heater; the others undo what was left set.
 PREAMBLE = (
@@ -58,7 +58,7 @@ class MarlinWriter:
         if isinstance(step, Dwell):
             return f"G4 P{step.seconds * 1000:.0f}"
         if isinstance(step, Clean):
-            return f"G4 P{step.seconds * 1000:.0f} ; clean"
+            return f"G4 P{step.seconds * 1000:.0f} ; {CLEAN}"
         return f"; {step.text}"
 
     def _extrude(self, step: Extrude) -> str:

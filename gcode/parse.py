@@ -10,7 +10,7 @@ import re
 from gcode.emit import BEGIN, END, TITLE
 from gcode.geometry import Curve, Point, Shape, Straight
 from gcode.grbl import volume_along
-from gcode.program import Clean, Comment, Dwell, Extrude, Prime, Program, Retract, Step, Travel, on_grid
+from gcode.program import CLEAN, Clean, Comment, Dwell, Extrude, Prime, Program, Retract, Step, Travel, on_grid
 from gcode.words import Command, read_commands
 from skinfab.errors import InputError
 
@@ -74,7 +74,7 @@ class _Reader:
         words = self.words(command)
         if command.code == "G4" and words.keys() == {"P"}:
             seconds = float(words["P"] or 0.0) / 1000
-            return Clean(seconds) if command.comment == "clean" else Dwell(seconds)
+            return Clean(seconds) if command.comment == CLEAN else Dwell(seconds)
         speed = self.fed(command, words)
         if command.code == "G0" and words and words.keys() <= set("XYZ"):
             return self.travel(words, speed)
@@ -158,4 +158,4 @@ class _SpindleReader(_Reader):
         if self.flow:
             rate = abs(self.flow)
             return Prime(rate * seconds, rate) if self.flow > 0 else Retract(rate * seconds, rate)
-        return Clean(seconds) if command.comment == "clean" else Dwell(seconds)
+        return Clean(seconds) if command.comment == CLEAN else Dwell(seconds)

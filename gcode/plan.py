@@ -14,7 +14,7 @@ from gcode.emit import on_grid_of
 from gcode.geometry import Curve, Point, Shape, Straight, shape_of
 from gcode.order import short_order
 from gcode.printer import Cleaning, Park, Printer
-from gcode.program import Clean, Comment, Dwell, Extrude, Prime, Program, Retract, Step, Travel, on_grid
+from gcode.program import PRINT_OVERRUN, Clean, Comment, Dwell, Extrude, Prime, Program, Retract, Step, Travel, on_grid
 from skinfab.errors import InputError, RefusedError
 from skinfab.material import Material
 from skinfab.paths import Path, Segment
@@ -113,48 +113,68 @@ class _Planner:
         self.laid = Laid()
         self.paths = paths
         self.pad_rows = pad_rows  # how many segments of a path, at either end, are its pad
+        self.beyond: list[tuple[str, Straight]] = []  # ink beyond the ends of paths, and of which
+        self.lowered: Counter[tuple[str, float, float]] = Counter()  # speeds of the pattern at hand: why, from, to
         self.steps: list[Step] = []
         self.warnings: list[str] = []
 
     def begin(self) -> None:
         self._lift()
         if (place := self.printer.cleaning) and place.initial_extrude:
-            self.steps.append(Comment("first ink, at the cleaning place"))
-            self._go_to(place)
             # In portions, for no command may ask for more E than the firmware accepts.
             count = max(math.ceil(place.initial_extrude * self.printer.pump.e_per_mm3 / self.printer.pump.max_e), 1)
-            self.steps += [self._prime(place.initial_extrude / count)] * count
-            self.steps.append(Clean(place.seconds))
+            self._clean(place, "first ink, at the cleaning place", [self._prime(place.initial_extrude / count)] * count)
 
     def pattern(self, name: str, path: Path) -> None:
         motion, process, pump = self.printer.motion, self.printer.process, self.printer.pump
         shapes = [shape_of(s) for s in path.segments if s.length > 0]
         (dx, dy), out = shapes[0].directions[0], shapes[-1].directions[1]
-        inked = self._run(name, "print-overrun", shapes[0].start, (-dx, -dy), process.print_overrun, leaves=False)
-        shapes = [*([Straight(inked, shapes[0].start)] if inked != shapes[0].start else []), *shapes]
-        entry = self._run(name, "start overrun", shapes[0].start, (-dx, -dy), process.overrun_start, leaves=False)
+        first, last = shapes[0].start, shapes[-1].end
+        inked = self._run(name, "print-overrun", first, (-dx, -dy), process.print_overrun, leaves=False)
+        entry = self._run(name, "start overrun", inked, (-dx, -dy), process.overrun_start, leaves=False)
         slow = motion.straight_speed
         self.steps += [
             Comment(f"pattern {name}"),
             Travel(*entry, speed=motion.travel_speed),
             Travel(z=self.printer.heights.print, speed=motion.z_speed),
         ]
-        if entry != shapes[0].start:
-            self.steps.append(Travel(*shapes[0].start, speed=slow))
+        if entry != inked:
+            self.steps.append(Travel(*inked, speed=slow))
         if pump.prime:
             self.steps.append(self._prime(pump.prime))
-        self._extrude(name, shapes)
+        if inked != first:
+            self._beyond(name, Straight(inked, first))
+            self.steps.append(Comment("path"))
+        self._extrude(shapes)
+        past = self._run(name, "print-overrun past the end", last, out, process.print_overrun_end, leaves=True)
+        if past != last:
+            self._beyond(name, Straight(last, past))
         if pump.retract:
             self.steps.append(Retract(pump.retract, self._pump_rate()))
-        exit_ = self._run(name, "end overrun", shapes[-1].end, out, process.overrun_end, leaves=True)
-        if exit_ != shapes[-1].end:
+        exit_ = self._run(name, "end overrun", past, out, process.overrun_end, leaves=True)
+        if exit_ != past:
             self.steps.append(Travel(*exit_, speed=slow))
         self._lift()
         if process.pause:
             self.steps.append(Dwell(process.pause))
         if place := self.printer.cleaning:
-            self._go_to(place)
-            self.steps.append(Clean(place.seconds))
+            self._clean(place, "cleaning")
+        self._say_lowered(name)
+
+    def _clean(self, place: Cleaning, why: str, first: Sequence[Prime] = ()) -> None:
+        """To the place above the walls, down to its height, wait, wipe to and fro along x, and up again."""
+        x, y = place.x + self.printer.bed.origin[0], place.y + self.printer.bed.origin[1]
+        self.steps.append(Comment(why))
+        self._go_to(place)
+        low = place.height is not None and place.height < self.printer.heights.travel
+        if low:
+            self.steps.append(Travel(z=place.height, speed=self.printer.motion.z_speed))
+        self.steps += [*first, Clean(place.seconds)]
+        if place.wipe:
+            slow = self.printer.motion.straight_speed
+            self.steps += [Travel(x + place.wipe, y, speed=slow), Travel(x, y, speed=slow)]
+        if low:
+            self._lift()
 
     def end(self) -> None:
         # Every pattern ends with a lift, so this goes above the walls.
@@ -192,7 +212,7 @@ class _Planner:
                 break
             if self.wall.room([run.segment]) < need:
                 obstacle = "the mould's wall"
-            elif met := self._met_by_ink(name, run) if kind == "print-overrun" else None:
+            elif met := self._met_by_ink(name, run) if kind.startswith("print-overrun") else None:
                 obstacle = "its own path" if met == name else f"pattern {met}"
             else:
                 break
@@ -201,36 +221,46 @@ class _Planner:
         return end if length else at
 
     def _met_by_ink(self, name: str, run: Straight) -> str | None:
-        """Which pattern ink along `run`, before the path of that name, would come too near to: one printed later, or itself."""
+        """Which pattern ink along `run`, before or past the path of that name, would come too near to; or itself."""
+        room = self.material.ink.bead_width + self.material.gap
+        inks: list[tuple[str, Sequence[Segment]]] = [(other, [shape.segment]) for other, shape in self.beyond]
         for other, path in self.paths.items():
-            segments = self._beyond_pad(path, self.pad_rows[name], run.start) if other == name else path.segments
-            room = self.material.ink.bead_width + self.material.gap
+            inks.append((other, self._beyond_pad(path, self.pad_rows[name], run.start) if other == name else path.segments))
+        for other, segments in inks:
             if segments and distance(Curves.of_segments([run.segment]), Curves.of_segments(segments)) < room:
                 return other
         return None
 
     def _beyond_pad(self, path: Path, rows: int, start: Point) -> Sequence[Segment]:
-        """A path without the pad it begins with, from whichever end, and without what touches its `start`."""
+        """A path without the pad at the end where the run's `start` is, and without what touches that."""
         begins = shape_of(path.segments[0]).start == start
         own = path.segments[rows:] if begins else path.segments[: len(path.segments) - rows]
         # The rows of a pad are one area of ink, closer than two beads may be; the run goes on along the first of them.
         return [s for s in own if start not in (shape_of(s).start, shape_of(s).end)]
 
-    def _extrude(self, name: str, shapes: Sequence[Shape]) -> None:
-        lowered: Counter[tuple[str, float, float]] = Counter()
+    def _beyond(self, name: str, run: Straight) -> None:
+        """Ink beyond an end of the path of that name."""
+        self.steps.append(Comment(PRINT_OVERRUN))
+        self._extrude([run])
+        self.beyond.append((name, run))
+
+    def _extrude(self, shapes: Sequence[Shape]) -> None:
         for shape in shapes:
             nominal = self.printer.motion.curve_speed if isinstance(shape, Curve) else self.printer.motion.straight_speed
             speed, why = allowed_speed(shape, self.area, self.printer)
             if speed < nominal:
-                lowered[why, nominal, round(speed, 3)] += 1
+                self.lowered[why, nominal, round(speed, 3)] += 1
             # No command may ask for more E than the firmware accepts.
             count = max(math.ceil(shape.length * self.area * self.printer.pump.e_per_mm3 / self.printer.pump.max_e * (1 + 1e-9)), 1)
             self.steps += [Extrude(part, self.area * part.length, speed) for part in shape.split(count)]
             self.laid.add(shape)
-        for (why, nominal, speed), times in sorted(lowered.items()):
+
+    def _say_lowered(self, name: str) -> None:
+        for (why, nominal, speed), times in sorted(self.lowered.items()):
             self.warnings.append(
                 f"{name}: speed lowered from {nominal:.4g} to {speed:.4g} mm/s on {times} segment{'s' * (times > 1)} by {why}"
             )
+        self.lowered.clear()
 
 
 def allowed_speed(shape: Shape, area: float, printer: Printer) -> tuple[float, str]:

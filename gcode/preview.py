@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Container, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from xml.sax.saxutils import escape
@@ -11,21 +11,27 @@ from xml.sax.saxutils import escape
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gcode.check_height import bead_radius
+from gcode.check_height import at_cleaning_place, bead_radius
 from gcode.geometry import Curve, Point, Shape, Straight, joined_box
 from gcode.printer import Printer
-from gcode.program import XY_DECIMALS
+from gcode.program import CLEAN, PRINT_OVERRUN, XY_DECIMALS
 from gcode.trace import Move, Trace, trace
 from skinfab.files import atomic_write
 
-#: What the head does, the colour of it, and its words in the legend; drawn in this order.
+#: What the head does, the colour of it, and its words in the legend; drawn in this order. The eight colours of Okabe and Ito
+#: ("Color Universal Design", 2008) are told apart with any kind of colour blindness.
 ROLES = {
-    "print": ("#1c2833", "print"),
-    "travel": ("#2e86c1", "travel, above the walls"),
-    "prime": ("#c0392b", "prime"),
-    "retract": ("#8e44ad", "retract"),
-    "overrun": ("#e67e22", "overrun: low, without ink"),
+    "print": ("#000000", "print"),
+    "print-overrun": ("#0072b2", "print-overrun: ink beyond the path"),
+    "travel": ("#56b4e9", "travel, above the walls"),
+    "prime": ("#d55e00", "prime"),
+    "retract": ("#cc79a7", "retract"),
+    "overrun": ("#e69f00", "overrun: low, without ink"),
+    "cleaning": ("#009e73", "cleaning"),
 }
+
+#: Roles with ink along a way.
+_INKED = ("print", "print-overrun")
 
 #: White border round what is shown, the height of a letter and of a row of the legend, and the narrowest sheet, mm.
 MARGIN_MM, TEXT_MM, ROW_MM, NARROWEST_MM = 8.0, 3.0, 4.5, 70.0
@@ -58,23 +64,45 @@ def strokes(judged: Trace, printer: Printer) -> Iterator[Stroke]:
     >>> [s.role for s in strokes(trace(text), load_printer())]
     ['travel', 'overrun', 'prime', 'print']
     """
+    beyond, cleaned = _said(judged)
     for move in judged.moves:
         x, y = move.end[:2]
         if x is None or y is None:
             continue
         if move.shape is not None:
-            role = _role(move, printer)
-            width = 2 * bead_radius(move, printer) if role == "print" else 2 * _THIN if role == "overrun" else _THIN
+            role = _role(move, printer, beyond)
+            width = 2 * bead_radius(move, printer) if role in _INKED else _THIN if role == "travel" else 2 * _THIN
             yield Stroke(role, move.shape, (x, y), width, move.pattern)
         elif move.e and not move.is_planar:
             yield Stroke("prime" if move.e > 0 else "retract", None, (x, y), _DOT, move.pattern)
+        if move.line in cleaned:
+            yield Stroke("cleaning", None, (x, y), 2 * _DOT, move.pattern)
 
 
-def _role(move: Move, printer: Printer) -> str:
+def _said(judged: Trace) -> tuple[set[int], set[int]]:
+    """Lines of ink beyond a path, and of the last move before each wait at the cleaning place."""
+    moves = {move.line for move in judged.moves}
+    beyond, cleaned = set(), set()
+    last, said = 0, ""
+    for command in judged.commands:
+        if not command.code:
+            said = command.comment
+        elif command.code == "G4" and command.comment == CLEAN:
+            cleaned.add(last)
+        elif command.line in moves:
+            last = command.line
+            if said == PRINT_OVERRUN:
+                beyond.add(last)
+    return beyond, cleaned
+
+
+def _role(move: Move, printer: Printer, beyond: Container[int]) -> str:
     if move.e > 0:
-        return "print"
+        return "print-overrun" if move.line in beyond else "print"
     heights = [z for z in (move.start[2], move.end[2]) if z is not None]
-    return "overrun" if heights and min(heights) < printer.heights.travel - 10**-XY_DECIMALS else "travel"
+    if not heights or min(heights) >= printer.heights.travel - 10**-XY_DECIMALS:
+        return "travel"
+    return "cleaning" if at_cleaning_place(move, min(heights), printer) else "overrun"
 
 
 def draw_toolpath(
@@ -128,7 +156,7 @@ def draw_toolpath(
 
 
 def _shown(drawn: Sequence[Stroke], wall: NDArray[np.float64]) -> tuple[Point, Point]:
-    boxes = [s.shape.bbox for s in drawn if s.role == "print" and s.shape] or [(s.at, s.at) for s in drawn] or [((0.0, 0.0), (0.0, 0.0))]
+    boxes = [s.shape.bbox for s in drawn if s.role in _INKED and s.shape] or [(s.at, s.at) for s in drawn] or [((0.0, 0.0), (0.0, 0.0))]
     if len(wall):
         low, high = wall.reshape(-1, 2).min(axis=0), wall.reshape(-1, 2).max(axis=0)
         boxes = [*boxes, ((float(low[0]), float(low[1])), (float(high[0]), float(high[1])))]
@@ -141,7 +169,10 @@ def _legend(drawn: Sequence[Stroke], used: Sequence[str]) -> Iterator[str]:
         y = MARGIN_MM + ROW_MM * k
         mine = [s for s in drawn if s.role == role]
         length = sum(s.shape.length for s in mine if s.shape)
-        amount = f"{length:.0f} mm" if mine[0].shape else f"{len(mine)} times"
+        dots = [s for s in mine if not s.shape]
+        amount = f"{len(dots)} time{'s' * (len(dots) > 1)}" if dots else f"{length:.0f} mm"
+        if role == "cleaning" and dots:  # most often beyond what is shown
+            amount += f" at X{_n(dots[0].at[0])} Y{_n(dots[0].at[1])}"
         yield f'<line x1="{_n(MARGIN_MM)}" y1="{_n(y)}" x2="{_n(MARGIN_MM + 6)}" y2="{_n(y)}" stroke="{colour}" stroke-width="1"/>'
         yield f'<text x="{_n(MARGIN_MM + 8)}" y="{_n(y)}">{words}: {amount}</text>'
 

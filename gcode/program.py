@@ -70,9 +70,16 @@ class Clean:
     seconds: float
 
 
+#: The comment before ink that is laid beyond a path's end; the next comment ends it.
+PRINT_OVERRUN = "print-overrun"
+
+#: The comment behind the wait at the cleaning place.
+CLEAN = "clean"
+
+
 @dataclass(frozen=True)
 class Comment:
-    """A line for the person who reads the file. ``pattern C1`` opens the pattern of that name."""
+    """A line for the person who reads the file. ``pattern C1`` opens the pattern of that name, see `PRINT_OVERRUN` too."""
 
     text: str
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from gcode.geometry import Box, Point
 from gcode.plan import bed_offset
-from gcode.printer import Printer
+from gcode.printer import Cleaning, Printer
 from gcode.program import on_grid
 from skinfab.errors import RefusedError
 from skinfab.material import Material
@@ -104,7 +104,9 @@ def _blocked(plate: Box, offset: Point, printer: Printer) -> str | None:
     need = printer.nozzle.outer_radius + printer.nozzle.clearance
     for name, place in (("cleaning", printer.cleaning), ("park", printer.park)):
         if place is not None:
-            at = np.array([place.x, place.y])
-            if np.hypot(*np.maximum(np.maximum(box[0] - at, at - box[1]), 0.0)) < need:
+            # The nozzle is wiped along +x.
+            stroke = place.wipe if isinstance(place, Cleaning) else 0.0
+            low, high = np.array([place.x, place.y]), np.array([place.x + stroke, place.y])
+            if np.hypot(*np.maximum(np.maximum(box[0] - high, low - box[1]), 0.0)) < need:
                 return name
     return None

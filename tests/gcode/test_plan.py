@@ -1,5 +1,6 @@
 """Where the ink goes: the sensors' paths on the bed, in a short order, with no speed beyond a limit."""
 
+import itertools
 import math
 from collections.abc import Callable
 from dataclasses import replace
@@ -11,7 +12,7 @@ from gcode.check import check_program
 from gcode.geometry import Curve, Straight
 from gcode.plan import Plan, allowed_speed, bed_offset, plan
 from gcode.printer import Cleaning, Park, Printer
-from gcode.program import Clean, Comment, Dwell, Extrude, Prime, Retract, Travel
+from gcode.program import PRINT_OVERRUN, Clean, Comment, Dwell, Extrude, Prime, Retract, Travel
 from skinfab.errors import InputError, RefusedError
 from skinfab.material import Material
 from skinfab.paths import Arc, Line, Path
@@ -218,6 +219,45 @@ def test_ink_before_a_path_stops_short_of_its_own_conductor_and_says_so(make_pie
     conductor = sensor.path.transformed(angle=0.0, shift=planned.offset)
     apart = distance(Curves.of_segments([extrusions(planned)[0].shape.segment]), Curves.of_segments(conductor.segments))
     assert material.ink.bead_width + material.gap - 1e-4 <= apart < 3.0
+
+
+@pytest.mark.parametrize("angle", [0.3, 2.0])
+@pytest.mark.parametrize("kind", [ContactSpiral, StrainLines])
+def test_ink_goes_on_past_a_paths_end(
+    make_piece: Callable, printer: Printer, material: Material, kind: type[ContactSpiral | StrainLines], angle: float
+) -> None:
+    """Along the tangent of the end, after the last of the path and before the retract; whichever end comes last."""
+    long = replace(printer, process=replace(printer.process, print_overrun=1.0, print_overrun_end=1.5))
+    sensor = Sensor("A", "P1", kind(**kind.example), 60, 80, angle, 0)
+    planned = plan(make_piece(220, 200), [sensor], printer=long, material=material)
+    assert planned.warnings == () and check_program(planned.program, long) == ()
+    assert planned.program.ink == pytest.approx(material.ink.bead_area_mm2 * (sensor.printed_path.length + 2.5), rel=1e-5)
+    laid = extrusions(planned)
+    first, last = laid[0].shape, laid[-1].shape
+    assert (first.length, last.length) == pytest.approx((1.0, 1.5), abs=2e-4)
+    np.testing.assert_allclose(last.directions[0], laid[-2].shape.directions[1], atol=1e-3)
+    steps = planned.program.steps
+    said = [k for k, s in enumerate(steps) if isinstance(s, Comment) and s.text == PRINT_OVERRUN]
+    assert [steps[k + 1] for k in said] == [laid[0], laid[-1]]
+    assert steps[said[0] + 2] == Comment("path") and isinstance(steps[said[1] + 2], Retract)
+    # The end overrun begins where the ink ends.
+    out = next(s for s in steps[said[1] :] if isinstance(s, Travel))
+    assert math.dist((out.x, out.y), last.end) == pytest.approx(1.0, abs=2e-4)
+
+
+def test_ink_past_an_end_keeps_off_other_ink_past_an_end(
+    make_piece: Callable, make_sensor: Callable, printer: Printer, material: Material
+) -> None:
+    """Two lines in a row, 10 mm apart: 6 mm of ink past the end of each would meet in the middle."""
+    long = replace(printer, process=replace(printer.process, print_overrun=6.0, print_overrun_end=6.0))
+    line = Path((Line((0, 0), (20, 0)),))
+    planned = plan(make_piece(140, 60), [make_sensor(n, line, x, 30) for n, x in (("A", 30), ("B", 60))], printer=long, material=material)
+    assert check_program(planned.program, long) == ()
+    (warning,) = [w for w in planned.warnings if "print-overrun" in w]
+    assert "for pattern " in warning
+    runs = sorted((min(s.start[0], s.end[0]), max(s.start[0], s.end[0])) for s in (e.shape for e in extrusions(planned)))
+    gaps = [b[0] - a[1] for a, b in itertools.pairwise(runs) if b[0] - a[1] > 1e-3]
+    assert len(gaps) == 1 and gaps[0] >= material.ink.bead_width + material.gap - 1e-4
 
 
 def test_travel_never_crosses_wet_ink_at_print_height(make_piece: Callable, printer: Printer, material: Material) -> None:

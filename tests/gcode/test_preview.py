@@ -18,6 +18,8 @@ from gcode.program import Extrude, Prime, Retract
 from gcode.trace import trace
 from skinfab.errors import InputError
 from skinfab.material import Material
+from skinfab.paths import Line
+from skinfab.paths import Path as InkPath
 
 SVG = "{http://www.w3.org/2000/svg}"
 
@@ -44,6 +46,37 @@ def test_roles_are_the_same_on_every_printer(name: str, make_piece: Callable, ma
     assert (count["overrun"], count["prime"], count["retract"]) == (2, 1, 1) and count["print"] >= 5
 
 
+def test_ink_beyond_a_path_is_told_from_it(make_piece: Callable, make_sensor: Callable, printer: Printer, material: Material) -> None:
+    long = replace(printer, process=replace(printer.process, print_overrun=2.0, print_overrun_end=3.0))
+    sensors = [make_sensor(name, InkPath((Line((0, 0), (20, 0)),)), 30, y) for name, y in (("A", 20), ("B", 40))]
+    planned = plan(make_piece(120, 100), sensors, printer=long, material=material)
+    drawn = list(strokes(trace(emit(planned.program, long)), long))
+    assert [s.role for s in drawn if s.role.startswith("print")] == ["print-overrun", "print", "print-overrun"] * 2
+    assert sum(s.shape.length for s in drawn if s.role == "print-overrun") == pytest.approx(2 * 5.0, abs=1e-3)
+    assert {round(s.width, 2) for s in drawn if s.role == "print-overrun"} == {0.79}
+    assert all(s.role != "print-overrun" for s in strokes(trace(emit(planned.program, long).replace("; print-overrun\n", "")), long))
+
+
+@pytest.mark.parametrize("kind", ["protanopia", "deuteranopia", "tritanopia", "none"])
+def test_roles_are_told_apart_with_any_colour_vision(kind: str) -> None:
+    """Each two colours by ten times what is just seen (CIELAB), as Machado et al. (2009) simulate each blindness."""
+    seen = {
+        "protanopia": [[0.152286, 1.052583, -0.204868], [0.114503, 0.786281, 0.099216], [-0.003882, -0.048116, 1.051998]],
+        "deuteranopia": [[0.367322, 0.860646, -0.227968], [0.280085, 0.672501, 0.047413], [-0.01182, 0.04294, 0.968881]],
+        "tritanopia": [[1.255528, -0.076749, -0.178779], [-0.078411, 0.930809, 0.147602], [0.004733, 0.691367, 0.3039]],
+        "none": np.eye(3),
+    }[kind]
+    srgb = np.array([[int(colour[k : k + 2], 16) / 255 for k in (1, 3, 5)] for colour, _ in ROLES.values()])
+    linear = np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
+    xyz = np.clip(linear @ np.transpose(seen), 0, 1) @ np.transpose(
+        [[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]]
+    )
+    f = np.cbrt(np.maximum(xyz / [0.9505, 1.0, 1.089], 216 / 24389))
+    lab = np.stack([116 * f[:, 1] - 16, 500 * (f[:, 0] - f[:, 1]), 200 * (f[:, 1] - f[:, 2])], axis=1)
+    apart = np.linalg.norm(lab[:, None] - lab[None], axis=2)[np.triu_indices(len(lab), 1)]
+    assert apart.min() > 10.0
+
+
 def drawing(text: str, printer: Printer, folder: Path, **more: object) -> ET.Element:
     draw_toolpath(text, folder / "a.svg", printer=printer, **more)  # type: ignore[arg-type]
     return ET.parse(folder / "a.svg").getroot()
@@ -53,7 +86,7 @@ def test_the_picture_has_true_arcs_to_scale(planned: Plan, printer: Printer, tmp
     root = drawing(emit(planned.program, printer), printer, tmp_path, title="Tool path of <P1>")
     assert root.get("width") == root.get("viewBox").split()[2] + "mm"  # one unit is a millimetre
     groups = {g.get("class"): g for g in root.iter(f"{SVG}g") if g.get("class")}
-    assert set(groups) == set(ROLES)
+    assert set(groups) == set(ROLES) - {"print-overrun", "cleaning"}
     for role, group in groups.items():
         assert group.get("stroke") == ROLES[role][0]
     arcs = sum(path.get("d").count("A") for path in groups["print"].iter(f"{SVG}path"))
