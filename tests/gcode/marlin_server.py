@@ -34,6 +34,8 @@ class MarlinServer:
     connections : int
     unnumbered : list of str
         Commands that came without a number, such as a question for the temperature.
+    log : list of str
+        Every line as it came and its answer, for the person who looks for the fault.
     """
 
     def __init__(self, *, garble: frozenset[int] = frozenset(), drop_at: int | None = None) -> None:
@@ -41,6 +43,7 @@ class MarlinServer:
         self.obeyed: list[str] = []
         self.resends: list[int] = []
         self.unnumbered: list[str] = []
+        self.log: list[str] = []
         self.connections = 0
         self._seen = 0
         self._last = 0
@@ -81,14 +84,16 @@ class MarlinServer:
                 connection.settimeout(SILENCE_S)
                 try:
                     self._talk(connection)
-                except (TimeoutError, ConnectionError):
-                    continue
+                except (TimeoutError, ConnectionError) as fault:
+                    self.log.append(f"the connection ended: {fault!r}")
 
     def _talk(self, connection: socket.socket) -> None:
         connection.sendall(b"start\n")
         with connection.makefile("rb") as lines:
             for raw in lines:
-                answer = self._answer(raw.decode("ascii").strip())
+                line = raw.decode("ascii").strip()
+                answer = self._answer(line)
+                self.log.append(f"{self._seen:4d} {line} -> {answer!r}")
                 if answer is None:
                     return
                 connection.sendall(answer.encode("ascii"))

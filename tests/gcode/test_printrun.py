@@ -25,8 +25,13 @@ pytestmark = pytest.mark.skipif(not (PYTHON.parent.parent / ".stamp").exists(), 
 
 def printrun(*words: object, timeout: float = 90.0) -> dict[str, Any]:
     command = [str(PYTHON), str(Path(__file__).with_name("with_printrun.py")), *map(str, words)]
-    run = subprocess.run(command, capture_output=True, text=True, check=True, timeout=timeout)
-    return json.loads(run.stdout)  # type: ignore[no-any-return]
+    try:
+        run = subprocess.run(command, capture_output=True, text=True, timeout=timeout)
+    except subprocess.TimeoutExpired as fault:
+        said = (fault.stderr or b"").decode() if isinstance(fault.stderr, bytes) else fault.stderr
+        pytest.fail(f"{' '.join(map(str, words))} took more than {timeout:g} s and said on stderr:\n{said}")
+    assert run.returncode == 0, f"{' '.join(map(str, words))} ended with {run.returncode} and said on stderr:\n{run.stderr}"
+    return dict(json.loads(run.stdout))
 
 
 def reading(text: str, folder: Path) -> dict[str, Any]:
@@ -75,10 +80,21 @@ def job(planned: Plan, printer: Printer, tmp_path: Path) -> tuple[Path, list[str
     return file, [command for line in text.splitlines() if (command := line.partition(";")[0].strip())]
 
 
+def send(server: MarlinServer, file: Path, after_a_drop: str) -> dict[str, Any]:
+    """What the sender says; where a test fails, pytest shows what went over the wire as well."""
+    with server:
+        try:
+            sent = printrun("send", file, server.address, after_a_drop)
+        finally:
+            sys.stdout.write("\n".join(server.log) + "\n")
+    sys.stdout.write(f"the sender: {sent}\n")
+    return sent
+
+
 def test_a_whole_job_arrives(job: tuple[Path, list[str]]) -> None:
     file, commands = job
-    with MarlinServer() as server:
-        sent = printrun("send", file, server.address, "give-up")
+    server = MarlinServer()
+    sent = send(server, file, "give-up")
     assert sent == {"finished": True, "errors": [], "dropped_at": None}
     assert server.obeyed == commands and len(commands) > 200
     assert server.resends == [] and server.connections == 1
@@ -86,8 +102,8 @@ def test_a_whole_job_arrives(job: tuple[Path, list[str]]) -> None:
 
 def test_garbled_lines_are_asked_for_again(job: tuple[Path, list[str]]) -> None:
     file, commands = job
-    with MarlinServer(garble=frozenset({3, 10, 11, 57, 200})) as server:
-        sent = printrun("send", file, server.address, "give-up")
+    server = MarlinServer(garble=frozenset({3, 10, 11, 57, 200}))
+    sent = send(server, file, "give-up")
     assert sent["finished"]
     assert len(server.resends) >= 4 and all("checksum" in e or "Last Line" in e for e in sent["errors"])
     assert server.obeyed == commands  # none twice, none left out
@@ -95,22 +111,22 @@ def test_garbled_lines_are_asked_for_again(job: tuple[Path, list[str]]) -> None:
 
 def test_a_dropped_connection_is_reported_and_the_printer_waits(job: tuple[Path, list[str]]) -> None:
     file, commands = job
-    with MarlinServer(drop_at=60) as server:
-        sent = printrun("send", file, server.address, "give-up")
+    server = MarlinServer(drop_at=60)
+    sent = send(server, file, "give-up")
     assert not sent["finished"] and any("disconnected?" in e for e in sent["errors"])
     assert server.obeyed == commands[:60]
 
 
 def test_a_dropped_job_is_resumed_where_it_was(job: tuple[Path, list[str]]) -> None:
     file, commands = job
-    with MarlinServer(drop_at=60) as server:
-        sent = printrun("send", file, server.address, "resume")
+    server = MarlinServer(drop_at=60)
+    sent = send(server, file, "resume")
     assert sent["finished"] and server.connections == 2
     assert server.obeyed == commands  # no ink twice, none left out
 
 
 def test_a_dropped_job_can_be_begun_again_on_a_fresh_mould(job: tuple[Path, list[str]]) -> None:
     file, commands = job
-    with MarlinServer(drop_at=60) as server:
-        sent = printrun("send", file, server.address, "restart")
+    server = MarlinServer(drop_at=60)
+    sent = send(server, file, "restart")
     assert sent["finished"] and server.obeyed == commands[:60] + commands

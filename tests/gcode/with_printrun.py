@@ -44,28 +44,36 @@ def send(file: str, address: str, after_a_drop: str) -> dict[str, object]:
     sender = printcore.printcore()
     sender.errorcb, sender.onlinecb, sender.endcb = failed, online.set, done.set
     sender.recvcb = lambda line: answers.append(line.strip())
+    sender.sendcb = lambda command, _: sent.append(command)
     with open(file, encoding="utf-8") as lines:
         job = gcoder.LightGCode(lines.read().split("\n"))
 
     answers: list[str] = []
+    sent: list[str] = []
 
     def leave() -> None:
-        # Its print thread forgets itself at the end, and `disconnect` trips over that if it comes in between.
+        # At its end its print thread forgets itself, calls `endcb` before that and starts the send thread after it, and
+        # `disconnect` trips over a thread that is not started yet. So the thread itself is waited for, by its name.
         sender.printing = False
-        thread = sender.print_thread
-        if thread is not None:
-            thread.join(PATIENCE_S)
+        for thread in threading.enumerate():
+            if thread.name == "print thread":
+                thread.join(PATIENCE_S)
         sender.disconnect()
+
+    def unanswered() -> int:
+        return len(sent) - sum(a.startswith("ok") for a in answers)
 
     def stream(first: int) -> bool:
         online.clear(), done.clear(), lost.clear()
+        before = unanswered()
         sender.connect(address, 115200)
         if not online.wait(PATIENCE_S) or not sender.startprint(job, first):
             return False
         until = time.monotonic() + PATIENCE_S
-        while not (done.is_set() or lost.is_set()) and time.monotonic() < until:
+        # Its end is when the last line was sent; hanging up before the answers are read would cut off what is on the way.
+        while not ((done.is_set() and unanswered() == before) or lost.is_set()) and time.monotonic() < until:
             time.sleep(0.005)
-        return done.is_set() and not lost.is_set()
+        return done.is_set() and unanswered() == before and not lost.is_set()
 
     finished, at = stream(0), None
     if lost.is_set():
