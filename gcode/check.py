@@ -7,19 +7,28 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TypeAlias
 
+from gcode.check_bead import bead_findings, meant_area
 from gcode.check_commands import command_findings
 from gcode.check_file import file_findings
 from gcode.check_grbl import grbl_findings
 from gcode.check_height import height_findings
-from gcode.check_ink import ink_findings
+from gcode.check_ink import ink_findings, laid_pieces
+from gcode.check_lines import line_findings
+from gcode.check_notes import notes
+from gcode.check_settings import setting_findings
 from gcode.check_wall import Wall, wall_findings
 from gcode.emit import emit
 from gcode.geometry import Curve, Straight
-from gcode.printer import Printer
+from gcode.printer import Bed, Printer
 from gcode.program import E_DECIMALS, F_DECIMALS, XY_DECIMALS, Comment, Prime, Program, Retract
-from gcode.trace import Finding, Move, Trace, trace
+from gcode.trace import Finding, Move, Trace, trace_as_far
+from skinfab.errors import InputError
 from skinfab.tolerances import ARC_RADIUS_MM
+
+Corner: TypeAlias = tuple[float | None, float | None]
 
 #: Half a step of each emitted word: what rounding alone may add.
 HALF_XY, HALF_E, HALF_F = 0.5 * 10**-XY_DECIMALS, 0.5 * 10**-E_DECIMALS, 0.5 * 10**-F_DECIMALS / 60
@@ -53,20 +62,69 @@ def check_text(text: str, printer: Printer, *, wall: Wall | None = None) -> tupl
     ...     print(finding)
     line 6: it reaches X355.0000, the bed ends at X350.0000; move the pattern inward or choose a larger printer
     """
-    judged = trace(text, spindle=printer.spindle)
+    judgement = judge(text, printer, wall=wall)
+    if judgement.broken_off:
+        raise InputError(judgement.broken_off)
+    return judgement.findings
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """All that can be said of a text.
+
+    Parameters
+    ----------
+    findings : tuple of Finding
+        Its faults, in the order of its lines.
+    notes : tuple of str
+        What is no fault but explains some.
+    broken_off : str
+        Where a line cannot be read or followed: which, and why. The findings are then of what comes before it, without
+        those about the file as a whole.
+    """
+
+    findings: tuple[Finding, ...]
+    notes: tuple[str, ...]
+    broken_off: str = ""
+
+
+def judge(text: str, printer: Printer, *, wall: Wall | None = None, bead_area: float | None = None) -> Judgement:
+    """Everything about a G-code text.
+
+    Parameters
+    ----------
+    text : str
+    printer : Printer
+    wall : Wall, optional
+        The mould's, where it is known.
+    bead_area : float, mm^2, optional
+        Cross-section that the bead should have; the file's own head comes first, the bundled material last.
+
+    Examples
+    --------
+    >>> from gcode.printer import load_printer
+    >>> judgement = judge("G28 X Y\\nG0 X400 F600\\nG5 X1", load_printer())
+    >>> [finding.what for finding in judgement.findings], judgement.broken_off
+    (['it reaches X400.0000, the bed ends at X350.0000'], 'line 3: G5 is not supported; use lines and arcs in the XY plane')
+    """
+    judged, fault = trace_as_far(text, spindle=printer.spindle)
+    laid = laid_pieces(judged, printer)
     findings = [
-        *file_findings(judged, printer),
+        *(() if fault else file_findings(judged, printer)),
+        *line_findings(text),
         *judged.faults,
         *(grbl_findings(judged) if printer.spindle else command_findings(judged, printer)),
+        *(() if printer.spindle else setting_findings(judged, printer)),
         *height_findings(judged, printer),
-        *ink_findings(judged, printer),
+        *ink_findings(judged, laid),
+        *bead_findings(judged, laid, printer, meant_area(judged, bead_area)),
         *(wall_findings(judged, wall, printer.nozzle) if wall else ()),
         *_retracts(judged, "mm^3 of ink" if printer.spindle else "mm of E"),
     ]
     for move in judged.moves:
         for what, remedy in _faults_of(move, printer):
             findings.append(Finding(move.line, what, remedy, move.pattern))
-    return tuple(sorted(findings, key=lambda f: f.line))
+    return Judgement(tuple(sorted(findings, key=lambda f: f.line)), tuple(notes(judged, printer)), str(fault or ""))
 
 
 def _faults_of(move: Move, printer: Printer) -> Iterator[tuple[str, str]]:
@@ -81,6 +139,8 @@ def _bounds(move: Move, printer: Printer) -> Iterator[tuple[str, str]]:
     # A straight move that returns from outside is no second fault.
     low, high = shape.bbox if isinstance(shape, Curve) else (move.end[:2], move.end[:2])
     bed = printer.bed
+    if _lies_within(low, high, move.end[2], bed):
+        return
     for k, axis in enumerate("XYZ"):
         start, end = (bed.origin[k], bed.origin[k] + bed.size[k]) if k < 2 else (0.0, bed.height)
         least, most = (low[k], high[k]) if k < 2 else (move.end[2], move.end[2])
@@ -90,6 +150,14 @@ def _bounds(move: Move, printer: Printer) -> Iterator[tuple[str, str]]:
             yield f"it reaches {axis}{most:.4f}, the {name} ends at {axis}{end:.4f}", remedy
         if least is not None and least < start - HALF_XY:
             yield f"it reaches {axis}{least:.4f}, the {name} begins at {axis}{start:.4f}", remedy
+
+
+def _lies_within(low: Corner, high: Corner, z: float | None, bed: Bed) -> bool:
+    """As nearly every move does."""
+    if low[0] is None or low[1] is None or high[0] is None or high[1] is None or z is None or not 0 <= z <= bed.height:
+        return False
+    (x, y), (width, depth) = bed.origin, bed.size
+    return x <= low[0] and high[0] <= x + width and y <= low[1] and high[1] <= y + depth
 
 
 def _arc(move: Move, printer: Printer) -> Iterator[tuple[str, str]]:

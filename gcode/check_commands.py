@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from gcode.printer import Printer
 from gcode.trace import Finding, Trace, homed_axes
-from gcode.words import HEATERS, Command
+from gcode.words import HEATERS, MOTORS_OFF, Command
 
 #: Words that Marlin reads on a machine of three axes; it passes over any other in silence.
 WORDS = {
@@ -19,20 +20,26 @@ WORDS = {
     "G28": "XYZLOR",
     "G92": "XYZE",
 }
+_WORDS = {code: frozenset(known) for code, known in WORDS.items()}
+_PLAIN = ("G0", "G1")  # no other rule asks them anything
 
 PROBES = ("G29", "G30", "G33", "G34", "G35", "G38.2", "G38.3", "G38.4", "G38.5", "G76", "M48")
 TUNERS = ("M303", "M306")  # they heat without being told how far
-SHIFTS = ("G92", "M206")
+SHIFTS = ("G92",)
+WORKSPACES = ("G55", "G56", "G57", "G58", "G59", "G59.1", "G59.2", "G59.3")
+STOPS = ("M112", "M410")
 #: Motions of the firmware's own: pattern, retract, wipe, park, go to mesh point, resume, change of filament.
-UNFOLLOWED = ("G6", "G10", "G11", "G12", "G26", "G27", "G42", "G61", "M125", "M600", "M701", "M702")
+UNFOLLOWED = ("G6", "G53", "G10", "G11", "G12", "G26", "G27", "G42", "G61", "M125", "M600", "M701", "M702")
 
 
 @dataclass(frozen=True)
 class State:
-    """What a rule may ask besides the command itself; `wet`: ink was laid before it."""
+    """What a rule may ask besides the command itself: was ink laid before, is some to come, was it homed?"""
 
     printer: Printer
     wet: bool
+    ink_follows: bool
+    homed: bool
 
     @property
     def z_by_hand(self) -> bool:
@@ -60,12 +67,22 @@ def command_findings(judged: Trace, printer: Printer) -> Iterator[Finding]:
     >>> print(*command_findings(trace("G28 X Y\\nG29"), load_printer()))
     line 2: G29 probes: the probe dips into the wet mould; take it out and set Z by hand
     """
-    first_ink = min((m.line for m in judged.moves if m.e > 0 and m.is_planar), default=None)
+    inked = [m.line for m in judged.moves if m.e > 0 and m.is_planar]
+    first, last = min(inked, default=math.inf), max(inked, default=-math.inf)
+    homed = False
     for command in judged.commands:
-        state = State(printer, wet=first_ink is not None and command.line > first_ink)
-        for rule in _BY_CODE.get(command.code, ()):
-            if found := rule.when(command, state):
-                yield Finding(command.line, rule.what.format(code=command.code, text=found), rule.remedy)
+        code = command.code
+        if code in _PLAIN and command.words.keys() <= _WORDS[code]:
+            continue  # nearly every line
+        rules = _BY_CODE.get(code, ())
+        if code.startswith("T") and code != "T0":
+            rules = (TOOL,)
+        if rules:
+            state = State(printer, wet=command.line > first, ink_follows=command.line < last, homed=homed)
+            for rule in rules:
+                if found := rule.when(command, state):
+                    yield Finding(command.line, rule.what.format(code=code, text=found), rule.remedy)
+        homed |= code == "G28"
 
 
 def _probes(_: Command, state: State) -> bool:
@@ -89,6 +106,35 @@ def _heats(command: Command, _: State) -> bool:
 def _shifts(command: Command, state: State) -> str:
     by_hand = {"xyz": "", "xy": "Z", "none": "XYZ"}[state.printer.home]
     return " and ".join(axis for axis in by_hand if axis in command.words)
+
+
+def _moves_origin(command: Command, _: State) -> str:
+    return " and ".join(axis for axis in "XYZ" if axis in command.words)
+
+
+def _frees_motors(command: Command, state: State) -> str:
+    """S only says after how long they may rest."""
+    if not state.ink_follows or not (state.wet or state.homed or state.z_by_hand) or "S" in command.words:
+        return ""
+    return " and ".join(axis for axis in "XYZE" if axis in command.words) or "every axis"
+
+
+def _waits(_: Command, state: State) -> bool:
+    return state.wet and state.ink_follows
+
+
+def _steps(command: Command, _: State) -> str:
+    return " and ".join(axis for axis in "XYZE" if axis in command.words)
+
+
+def _volumetric(command: Command, _: State) -> bool:
+    """D is the filament's diameter, which switches it on unless it is 0 or S is."""
+    d, s = (command.words.get(letter) for letter in "DS")
+    return d != 0 and s != 0 and bool(d or s or ("S" in command.words and s is None))
+
+
+def _lets_go_of_bounds(command: Command, _: State) -> bool:
+    return command.words.get("S") == 0
 
 
 def _shifts_all(_: Command, state: State) -> bool:
@@ -124,11 +170,48 @@ RULES = (
     ),
     Rule(TUNERS, _always, "{code} heats to tune a heater, and silicone sets early where it is warm", "take it out"),
     Rule(SHIFTS, _shifts, "{code} shifts the {text} that was set by hand", "send it before the start, not in the file"),
-    Rule(("G92.1", "M428"), _shifts_all, "{code} undoes the Z that was set by hand", "send it before the start, not in the file"),
+    Rule(("G92.1",), _shifts_all, "{code} undoes the Z that was set by hand", "send it before the start, not in the file"),
+    Rule(
+        ("M206",),
+        _moves_origin,
+        "M206 moves the origin of {text}: what follows lies elsewhere",
+        "send it before the start, not in the file",
+    ),
+    Rule(
+        ("M428",),
+        _always,
+        "M428 makes where the head is the origin: what follows lies elsewhere",
+        "send it before the start, not in the file",
+    ),
+    Rule(WORKSPACES, _always, "{code} takes an origin that is stored in the machine: what follows lies elsewhere", "take it out"),
+    Rule(
+        tuple(sorted(MOTORS_OFF)),
+        _frees_motors,
+        "{code} frees the motors of {text} before the last ink: the head no longer stands where it was",
+        "put it at the end",
+    ),
+    Rule(("M0", "M1"), _waits, "{code} waits for a click in the midst of the ink, and the silicone sets meanwhile", "take it out"),
+    Rule(STOPS, _always, "{code} stops the machine at once: what follows is not printed", "take it out"),
+    Rule(
+        ("M92",),
+        _steps,
+        "M92 changes the steps per mm of {text}: each mm told is another length",
+        "set it in the firmware before you measure",
+    ),
+    Rule(
+        ("M200",),
+        _volumetric,
+        "M200 makes E a volume and divides it by a filament's cross-section, the profile's E is mm of the pump's axis",
+        "take it out, or send M200 D0",
+    ),
+    Rule(("M211",), _lets_go_of_bounds, "M211 S0 lets the head run on beyond the ends of its axes", "take it out"),
     Rule(tuple(WORDS), _unknown_words, "{code} does not know {text}, which is passed over in silence", "correct the mistyped letter"),
     Rule(("G2", "G3"), _whole_circles, "P on an arc adds whole circles", "draw each half circle by a command of its own"),
     Rule(UNFOLLOWED, _always, "{code} moves head or ink in a way of the firmware's own, which no rule can judge", "write it as G0 and G1"),
     Rule(("M220", "M221"), _scaled, "{code} scales what the file says of speed or ink", "write the numbers themselves, with S100"),
 )
+
+#: Of any T but T0.
+TOOL = Rule((), _always, "{code} changes to another tool, whose nozzle is elsewhere", "take it out; there is one pump")
 
 _BY_CODE = {code: tuple(rule for rule in RULES if code in rule.codes) for rule in RULES for code in rule.codes}

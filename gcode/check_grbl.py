@@ -20,9 +20,10 @@ KNOWN = frozenset(
     for number in numbers.split()
 )
 
+#: G54 is no fault: it is the origin that G10 L20 P1 sets, and the one after a reset.
 PLACES = ("G28", "G30")
 PROBES = ("G38.2", "G38.3", "G38.4", "G38.5")
-OFFSETS = ("G10", "G28.1", "G30.1", "G43.1", "G49", "G54", "G55", "G56", "G57", "G58", "G59", "G92", "G92.1")
+OFFSETS = ("G10", "G28.1", "G30.1", "G43.1", "G49", "G55", "G56", "G57", "G58", "G59", "G92", "G92.1")
 
 
 def grbl_findings(judged: Trace) -> Iterator[Finding]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, fields
 
 import numpy as np
@@ -15,8 +15,9 @@ from gcode.printer import Printer
 from gcode.trace import Finding, Move, Trace
 from skinfab.tolerances import INK_CHORD_MM
 
-#: Within a stroke, ink may be near to what was laid less than so many times that distance before, counted along the
-#: path: there it turns. A half turn takes pi/2 of it, a corner of 30 degrees less than 4; a sharper one lies on itself.
+#: Within a stroke, ink may be near to what was laid less than so many bead radii before, counted along the path: there
+#: it turns. A half turn whose ends are a radius apart takes pi/2 of it, a corner of 30 degrees less than 4; a sharper one
+#: lies on itself.
 TURN = 4.0
 
 #: Pieces that are compared among themselves at once: even where all lie on one heap, their pairs stay a small table.
@@ -56,7 +57,7 @@ class Pieces:
         return Pieces(*(getattr(self, f.name)[which] for f in fields(self)))
 
 
-def ink_findings(judged: Trace, printer: Printer) -> Iterator[Finding]:
+def ink_findings(judged: Trace, laid: Pieces) -> Iterator[Finding]:
     """Moves that lay ink upon ink or come down into it, in their order; each is compared with faultless ink before it.
 
     Beads of two strokes must not touch. Within a stroke, where the rows of a pad lie closer than a bead is wide, no
@@ -67,11 +68,12 @@ def ink_findings(judged: Trace, printer: Printer) -> Iterator[Finding]:
     >>> from gcode.printer import load_printer
     >>> from gcode.trace import trace
     >>> text = "G28 X Y\\nM83\\nM302 P1\\nG0 X10 Y10 Z1.6 F300\\nG1 X20 E40 F240\\nG1 Y12 E8\\nG1 X15 E20\\nG1 Y5 E28"
-    >>> print(*ink_findings(trace(text), load_printer()))
+    >>> judged = trace(text)
+    >>> print(*ink_findings(judged, laid_pieces(judged, load_printer())))
     line 8: near X15.00 Y5.00 it lays ink 0.00 mm from the wet ink of line 5, centre to centre, where 0.37 is needed; \
 move one of the two away, or print one of them alone
     """
-    pieces = _joined(_pieces(judged, printer))
+    pieces = _joined(laid)
     for later, earlier, near, need in _meetings(pieces):
         order = np.lexsort((near, pieces.move[later]))
         _, first = np.unique(pieces.move[later[order]], return_index=True)
@@ -92,8 +94,9 @@ def _finding(at: Move, on: Move, place: tuple[float, float], near: float, need: 
     return Finding(at.line, what, "move one of the two away, or print one of them alone", at.pattern)
 
 
-def _pieces(judged: Trace, printer: Printer) -> Pieces:
-    ends: list[tuple[float, ...]] = []
+def laid_pieces(judged: Trace, printer: Printer) -> Pieces:
+    """All ink of a trace, and the places where the nozzle comes down."""
+    ends: list[Sequence[float]] = []
     counts: list[int] = []  # pieces of each of these moves
     moves: list[int] = []
     strokes: list[int] = []
@@ -186,7 +189,7 @@ def _distances(pieces: Pieces, later: NDArray[np.int64], earlier: NDArray[np.int
     same = pieces.stroke[later] == pieces.stroke[earlier]
     need = pieces.radius[earlier] + np.where(same, 0.0, pieces.radius[later]) - _SLACK
     # The way along the path from which on they must keep apart.
-    apart = np.where(same, TURN * need, -np.inf)
+    apart = np.where(same, TURN * pieces.radius[earlier], -np.inf)
     asked = (earlier < later) & (pieces.radius[earlier] > 0) & (need > 0) & (pieces.end[later] - pieces.begin[earlier] > apart)
     asked = np.flatnonzero(asked)
     near[asked] = distance_apart(pieces[earlier[asked]], pieces[later[asked]], apart[asked])

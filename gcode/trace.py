@@ -113,11 +113,22 @@ def trace(text: str, *, spindle: Spindle | None = None) -> Trace:
     >>> t.moves[1].shape.length.__round__(6), t.faults
     (3.141593, ())
     """
-    head = _Head(spindle)
-    commands = tuple(read_commands(text))
-    for command in commands:
-        head.follow(command)
-    return Trace(tuple(head.moves), tuple(head.faults), commands)
+    judged, fault = trace_as_far(text, spindle=spindle)
+    if fault:
+        raise fault
+    return judged
+
+
+def trace_as_far(text: str, *, spindle: Spindle | None = None) -> tuple[Trace, InputError | None]:
+    """As `trace`, up to the line that cannot be read or followed, and what is wrong with it."""
+    head, commands, fault = _Head(spindle), [], None
+    try:
+        for command in read_commands(text):
+            head.follow(command)
+            commands.append(command)
+    except InputError as stopped:
+        fault = stopped
+    return Trace(tuple(head.moves), tuple(head.faults), tuple(commands)), fault
 
 
 def homed_axes(command: Command) -> str:

@@ -14,9 +14,17 @@ from skinfab.errors import InputError
 #: Heaters, which may name a tool by T.
 HEATERS = frozenset({"M104", "M109", "M140", "M141", "M190", "M191"})
 
+#: Settings of the firmware that a file may change; T is a tool there, too, or the travels' acceleration.
+SETTINGS = frozenset({"M92", "M200", "M201", "M203", "M204", "M205", "M211"})
+
+#: Commands that free the motors; like G28 they take axes as flags.
+MOTORS_OFF = frozenset({"M18", "M84"})
+
 #: Commands whose words are read; any other line (messages, fans) is passed over as it stands.
-READ = HEATERS | {"G0", "G1", "G2", "G3", "G4", "G5", "G20", "G21", "G28", "G90", "G91", "G92"}
+READ = HEATERS | SETTINGS | MOTORS_OFF | {"G0", "G1", "G2", "G3", "G4", "G5", "G20", "G21", "G28", "G90", "G91", "G92"}
 READ |= {"M3", "M4", "M5", "M82", "M83", "M206", "M220", "M221", "M302"}
+_FLAGS = MOTORS_OFF | {"G28"}
+_TAKE_T = HEATERS | SETTINGS | {"M206", "M221"}
 
 #: A line beyond this is not G-code, and a file beyond that is not a skin's.
 LINE_LIMIT, FILE_LIMIT = 4096, 256 * 2**20
@@ -30,7 +38,7 @@ _PLAIN_WORD = re.compile(r"([A-Z])\s*([-+.\d]+)")
 _BRACKETS = re.compile(r"\([^()]*\)")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Command:
     """One command line: `line` counts from 1, `code` is normalised ("G2" for "G02"), `size` is in bytes."""
 
@@ -98,7 +106,12 @@ def read_commands(text: str) -> Iterator[Command]:
             continue
         found = _COMMAND.match(body)
         if not found:
-            raise InputError(f"line {line}: cannot read {_shown(body)}; a command begins with G, M or T and a number")
+            known = (
+                "what begins with $ is told to GRBL before, not in a file"
+                if body[0] == "$"
+                else "a command begins with G, M or T and a number"
+            )
+            raise InputError(f"line {line}: cannot read {_shown(body)}; {known}")
         code = _code(*found.groups())
         words = _words(body[found.end() :], line, code) if code in READ else {}
         yield Command(line, code, words, comment.strip(), len(raw if raw.isascii() else raw.encode()))
@@ -111,9 +124,9 @@ def _code(letter: str, number: str, sub: str | None) -> str:
 
 def _words(rest: str, line: int, code: str) -> dict[str, float | None]:
     if _PLAIN.fullmatch(rest):
-        found = _PLAIN_WORD.findall(rest)
-        plain: dict[str, float | None] = {letter: float(number) for letter, number in found}
-        if len(plain) == len(found):
+        pairs = _PLAIN_WORD.findall(rest)
+        plain: dict[str, float | None] = {letter: float(number) for letter, number in pairs}
+        if len(plain) == len(pairs):
             return plain
     words: dict[str, float | None] = {}
     at = 0
@@ -122,12 +135,12 @@ def _words(rest: str, line: int, code: str) -> dict[str, float | None]:
         if not found:
             raise InputError(f"line {line}: cannot read {_shown(rest[at:])}; a word is one letter and one number")
         letter = found[1].upper()
-        if found[2] is None and rest[found.end() : found.end() + 1].isalpha() and code != "G28":  # it takes flags, G28 XY
+        if found[2] is None and rest[found.end() : found.end() + 1].isalpha() and code not in _FLAGS:  # G28 XY
             raise InputError(f"line {line}: cannot read {_shown(rest[at:].strip())}; a word is one letter and one number")
         value = None if found[2] is None else float(found[2])
         if value is not None and not math.isfinite(value):
             raise InputError(f"line {line}: {letter} is not a finite number; write it out in millimetres")
-        if letter in words or letter in ("GM" if code in HEATERS else "GMT"):
+        if letter in words or letter in ("GM" if code in _TAKE_T else "GMT"):
             raise InputError(f"line {line}: a second {letter} on one line; give each command a line of its own")
         words[letter] = value
         at = found.end()

@@ -32,6 +32,9 @@ PREVIEW_CHORD_MM = 0.02
 #: The same where wet ink is kept off wet ink: a hundredth of a bead's width.
 INK_CHORD_MM = 0.005
 
+#: A limit that a file sets is the profile's own if it differs by less: both are written with a few digits.
+SETTING_FRACTION = 1e-4
+
 #: Least slack of a triangle inequality, as a fraction of the mean edge: needles below it are mollified.
 MOLLIFY = 1e-9
 

@@ -9,9 +9,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from skinfab.cli.left_over import left_over, say_left_over
-from skinfab.errors import RefusedError
+from skinfab.errors import InputError, RefusedError
 
 if TYPE_CHECKING:
+    from gcode.check import Judgement
     from gcode.trace import Finding
     from gcode.write import PieceGcode
 
@@ -89,26 +90,38 @@ def _check(args: argparse.Namespace) -> int:
     for option, given in (("-o", args.output), ("--arcs", args.arcs), ("--preview", args.preview or None)):
         if given is not None:
             args.wrong_usage(f"check reads a file and writes none, so it takes no {option}")
-    from gcode.check import check_text
+    from gcode.check import judge
     from gcode.printer import DEFAULT_PRINTER, load_printer
     from gcode.words import read_text
-    from skinfab.errors import InputError
 
     file = args.words[1]
     printer = load_printer(args.printer or DEFAULT_PRINTER)
-    text = read_text(file)
-    try:
-        findings = check_text(text, printer)
-    except InputError as fault:
-        raise InputError(f"{file}: {fault}") from fault
+    judgement = judge(read_text(file), printer)
     if args.json:
-        print(json.dumps({"file": file, "printer": printer.name, "ok": not findings, "findings": [asdict(f) for f in findings]}))
-        return RefusedError.exit_status if findings else 0
-    if not findings:
-        print(f"{file}: no fault found by these rules on {printer.name}")
-        return 0
-    _show(findings)
-    raise RefusedError(f"{file} has {len(findings)} fault{'s' * (len(findings) > 1)} on {printer.name}; correct them before printing")
+        print(json.dumps(_told(file, printer.name, judgement)))
+    else:
+        for note in judgement.notes:
+            print(f"note: {note}")
+        _show(judgement.findings)
+    if judgement.broken_off:
+        raise InputError(f"{file}: {judgement.broken_off}")
+    if args.json:
+        return RefusedError.exit_status if judgement.findings else 0
+    if count := len(judgement.findings):
+        raise RefusedError(f"{file} has {count} fault{'s' * (count > 1)} on {printer.name}; correct them before printing")
+    print(f"{file}: no fault found by these rules on {printer.name}")
+    return 0
+
+
+def _told(file: str, printer: str, judgement: Judgement) -> dict[str, object]:
+    return {
+        "file": file,
+        "printer": printer,
+        "ok": not judgement.findings and not judgement.broken_off,
+        "findings": [asdict(f) for f in judgement.findings],
+        "notes": judgement.notes,
+        "broken_off": judgement.broken_off or None,
+    }
 
 
 def _show(findings: tuple[Finding, ...]) -> None:

@@ -88,6 +88,30 @@ def test_check_refuses_a_foreign_file_line_by_line(tmp_path: Path, capsys: pytes
     assert answer["ok"] is False and {f["line"] for f in answer["findings"]} == {0, 5, 6}  # 0: it never homes
 
 
+def test_what_comes_before_a_line_that_cannot_be_followed_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "broken.gcode"
+    file.write_text("G28 X Y\nG0 Z10 F300\nG0 X400 F600\nG5 X1\nG0 X900\n")
+    assert main(["gcode", "check", str(file)]) == 1
+    said = capsys.readouterr()
+    assert said.out.startswith("line 3: it reaches X400.0000") and said.out.count("\n") == 1
+    assert f"{file}: line 4: G5 is not supported" in said.err and said.err.count("\n") == 1
+    assert main(["gcode", "check", str(file), "--json"]) == 1
+    told = json.loads(capsys.readouterr().out)
+    assert told["broken_off"].startswith("line 4: G5") and told["ok"] is False and [f["line"] for f in told["findings"]] == [3]
+
+
+def test_a_file_for_another_printer_gets_a_note(document: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["gcode", str(document), "-o", str(tmp_path), "--printer", "generic-grbl"]) == 0
+    capsys.readouterr()
+    assert main(["gcode", "check", str(tmp_path / "P1.gcode")]) == 3
+    head, dialect, *_ = capsys.readouterr().out.splitlines()
+    assert head.startswith("note: its head says it is for generic GRBL machine, pump as spindle, it is judged for Creality")
+    assert dialect.startswith("note: it looks like a file for GRBL (M3 turns a pump")
+    assert main(["gcode", "check", str(tmp_path / "P1.gcode"), "--printer", "generic-grbl", "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert told["notes"] == [] and told["ok"] is True and told["broken_off"] is None
+
+
 def test_a_terminal_gets_one_line_for_each_kind_of_fault(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "many.gcode"
     moves = "".join(f"G0 X{400 + k} Y1\nG0 X1 Y1\n" for k in range(30))
@@ -127,7 +151,8 @@ def test_hostile_files_get_one_sentence(tmp_path: Path, capsys: pytest.CaptureFi
     file.write_bytes(content)
     assert main(["gcode", "check", str(file)]) == 1
     said = capsys.readouterr()
-    assert says in said.err and said.err.count("\n") == 1 and not said.out
+    assert says in said.err and said.err.count("\n") == 1
+    assert said.out == ("line 1: no speed F was given yet; give F, in mm/min, on the first move\n" if b"\n" in content else "")
 
 
 def test_refused_and_unusable_skins(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -50,9 +50,28 @@ def test_the_sound_file_is_sound(printer: Printer, planned: Plan, home: str) -> 
         ("xy", "M303 E0 S200", "M303 heats"),
         ("xy", "G92 Z0.3", "G92 shifts the Z"),
         ("none", "G92 X100 Z1.6", "G92 shifts the X and Z"),
-        ("xy", "M206 Z-2", "M206 shifts the Z"),
+        ("xy", "M206 Z-2", "M206 moves the origin of Z"),
+        ("xyz", "M206 X1 Y0", "M206 moves the origin of X and Y"),
+        ("xyz", "M428", "M428 makes where the head is the origin"),
         ("xy", "G92.1", "G92.1 undoes"),
-        ("none", "M428", "M428 undoes"),
+        ("none", "G92.1", "G92.1 undoes"),
+        ("xy", "G55", "G55 takes an origin that is stored"),
+        ("xy", "G59.3", "G59.3 takes an origin that is stored"),
+        ("xy", "G53 G0 X10", "no rule can judge"),
+        ("xy", "M84", "M84 frees the motors of every axis before the last ink"),
+        ("xyz", "M18 X Y", "M18 frees the motors of X and Y"),
+        ("none", "M84 XY", "M84 frees the motors of X and Y"),
+        ("xy", "M84 E", "M84 frees the motors of E"),
+        ("xy", "M112", "M112 stops the machine"),
+        ("xy", "M410", "M410 stops the machine"),
+        ("xy", "M92 E400", "M92 changes the steps per mm of E"),
+        ("xy", "M92 X80 Y80 Z400", "M92 changes the steps per mm of X and Y and Z"),
+        ("xy", "M200 D1.75", "M200 makes E a volume"),
+        ("xy", "M200 T0 D2.85", "M200 makes E a volume"),
+        ("xy", "M200 S1", "M200 makes E a volume"),
+        ("xy", "M211 S0", "M211 S0 lets the head run on"),
+        ("xy", "T1", "T1 changes to another tool"),
+        ("xy", "T12", "T12 changes to another tool"),
         ("xy", "G1 Q140 F240", "G1 does not know Q140"),
         ("xy", "G0 B2 Q", "G0 does not know B2 Q"),
         ("xy", "G3 X110 Y100 I5 J0 K2 E60 F200", "G3 does not know K2"),
@@ -82,7 +101,18 @@ def test_a_printer_that_homes_z_does_so_before_the_ink(printer: Printer, line: s
         ("xyz", "G92 Z1.6"),  # the place it is at
         ("xy", "G92 X100 Y100 E0"),
         ("none", "G92 E0"),
-        ("xy", "M206 X1"),
+        ("xy", "M206"),  # tells the offsets
+        ("xy", "G54"),
+        ("xy", "T0"),
+        ("xy", "M17"),
+        ("xy", "M84 S60"),  # only after a minute at rest
+        ("xy", "M92"),
+        ("xy", "M200 D0"),
+        ("xy", "M200 D1.75 S0"),
+        ("xy", "M200"),
+        ("xy", "M211 S1"),
+        ("xy", "M211"),
+        ("xy", "M0"),  # before the ink it may wait
         ("xy", "M104 S0"),
         ("xy", "M140 T0 S0"),
         ("xy", "M190 R0"),
@@ -99,6 +129,23 @@ def test_harmless_neighbours_pass(printer: Printer, home: str, line: str) -> Non
     assert not found(printer, home, wet=line)
 
 
+INK_AND_INK = SOUND.removesuffix("G0 Z10 F300\n") + "G0 Z10 F300\nG0 X100 Y110 F6000\nG0 Z1.6 F300\nG1 X110 Y110 E40 F240\nG0 Z10 F300\n"
+
+
+@pytest.mark.parametrize(("line", "says"), [("M0", "waits for a click"), ("M1 S5", "waits for a click"), ("M18", "frees the motors")])
+def test_in_the_midst_of_the_ink_and_after_it(printer: Printer, line: str, says: str) -> None:
+    (fault,) = check_text(INK_AND_INK.format(wet="", after=line + "\n"), printer)
+    assert fault.line == 8 and says in fault.what
+    assert not check_text(INK_AND_INK.format(wet="", after="") + line + "\n", printer)
+
+
+def test_motors_may_rest_before_they_are_homed(printer: Printer) -> None:
+    text = SOUND.format(wet="", after="")
+    by_probe = replace(printer, home="xyz")
+    assert not check_text("M84\n" + text.replace("G28 X Y", "G28"), by_probe)
+    assert [f.line for f in check_text("M84\n" + text, printer)] == [1]  # the Z that was set by hand is lost
+
+
 def test_every_rule_that_asks_for_words_gets_them() -> None:
-    asking = {code for rule in RULES if rule.when.__name__ not in ("_always", "_probes", "_shifts_all") for code in rule.codes}
+    asking = {code for rule in RULES if rule.when.__name__ not in ("_always", "_probes", "_shifts_all", "_waits") for code in rule.codes}
     assert asking <= READ

@@ -12,12 +12,12 @@ from hypothesis import strategies as st
 from shapely.ops import substring
 
 from gcode.check import check_text
-from gcode.check_ink import TURN, ink_findings
+from gcode.check_ink import TURN, ink_findings, laid_pieces
 from gcode.emit import emit
 from gcode.geometry import Curve, Shape
 from gcode.plan import Plan, plan
 from gcode.printer import Printer, load_printer
-from gcode.trace import Move, trace
+from gcode.trace import Finding, Move, trace
 from skinfab.material import Material
 from skinfab.patterns.registry import PATTERNS, make_pattern
 from skinfab.pieces import Piece
@@ -30,6 +30,11 @@ LIFT = "G0 Z10 F300\n"
 
 def found(body: str, printer: Printer) -> list[tuple[int, str]]:
     return [(f.line, f.what) for f in check_text(HEAD + body + LIFT, printer)]
+
+
+def inked(text: str, printer: Printer) -> list[Finding]:
+    judged = trace(text, spindle=printer.spindle)
+    return list(ink_findings(judged, laid_pieces(judged, printer)))
 
 
 def stroke(x: float, y: float, to: str, e: float) -> str:
@@ -82,12 +87,11 @@ def test_ink_and_ink(body: str, line: int | None, says: str, printer: Printer) -
 def test_a_pattern_printed_twice(planned: Plan, shift: float, arcs: str, name: str) -> None:
     judge = load_printer(name)
     text = emit(planned.program, judge, arcs=arcs)  # type: ignore[arg-type]
-    assert not list(ink_findings(trace(text, spindle=judge.spindle), judge))
+    assert not inked(text, judge)
     lines = text.splitlines()
     starts = [k for k, line in enumerate(lines) if line.startswith("; pattern")]
     again = [re.sub(r"X(-?[\d.]+)", lambda m: f"X{float(m[1]) + shift:.4f}", line) for line in lines[starts[0] : starts[1]]]
-    twice = trace("\n".join(lines[: starts[1]] + again + lines[starts[1] :]), spindle=judge.spindle)
-    faults = list(ink_findings(twice, judge))
+    faults = inked("\n".join(lines[: starts[1]] + again + lines[starts[1] :]), judge)
     assert faults and all("wet ink of line" in f.what and f.line > starts[1] for f in faults)
     assert {f.pattern for f in faults} == {lines[starts[0]].removeprefix("; pattern ")}
 
@@ -198,7 +202,7 @@ def within_a_stroke(line: shapely.LineString, way: float, other: shapely.LineStr
 @settings(max_examples=60, deadline=None)
 def test_against_brute_force(printer: Printer, steps: list, thickness: list[float]) -> None:
     judged = trace(drawn(steps, thickness))
-    faulty = {f.line for f in ink_findings(judged, printer)}
+    faulty = {f.line for f in ink_findings(judged, laid_pieces(judged, printer))}
     for line, room in rooms(list(judged.moves), printer).items():
         if room < -0.05:  # chords, joined pieces and places are rounded, and brute force steps along
             assert line in faulty, (line, room)

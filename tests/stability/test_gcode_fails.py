@@ -11,7 +11,7 @@ import pytest
 
 from gcode import check_ink
 from gcode.check import check_program, check_text
-from gcode.check_ink import ink_findings
+from gcode.check_ink import ink_findings, laid_pieces
 from gcode.clearance import Laid
 from gcode.emit import emit
 from gcode.geometry import Curve, Straight, shape_of
@@ -148,7 +148,7 @@ def test_a_heap_of_segments_one_upon_another_is_found_out_in_bounded_memory() ->
     heap = [f"G1 X{100 + 2 * (k % 2)} E8 F240" for k in range(1, 20_001)]
     judged = trace(HEAD + "G0 X100 Y100 F6000\nG0 Z1.6 F300\n" + "\n".join([*heap, "G0 Z10 F300"]))
     tracemalloc.start()
-    faults = list(ink_findings(judged, PRINTER))
+    faults = list(ink_findings(judged, laid_pieces(judged, PRINTER)))
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     assert [f.line for f in faults] == list(range(10, 20_009))  # all but the first
@@ -169,7 +169,7 @@ def test_pieces_shorter_than_the_bead_is_wide_have_few_neighbours_once_joined() 
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(check_ink, "_distances", counted)
-        assert not list(ink_findings(judged, PRINTER))
+        assert not list(ink_findings(judged, laid_pieces(judged, PRINTER)))
     assert 0 < pairs < 2e6
 
 
