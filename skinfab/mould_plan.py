@@ -20,7 +20,10 @@ from skinfab.errors import InputError, RefusedError
 from skinfab.material import Mould
 from skinfab.pieces import Piece
 from skinfab.tolerances import CAVITY_FRACTION, MOULD_GRID_MM, MOULD_SLIT_MM, OVERLAP_FRACTION, PRINTABLE_WALL_MM
-from skinfab.wire_exits import WirePad, WireSlot, plan_exits, slot_region, through_wall
+from skinfab.wire_exits import WirePad, WireSlot, exit_warnings, plan_exits, slot_region, through_wall
+
+#: How often wires whose ways out end at lips are planned anew.
+_EXIT_TRIES = 5
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,20 +123,11 @@ def mould_plan(
     bottom, brim, top, brim_at = _sections(cavity, mould, depth, freeboard)
     if bottom.is_empty:
         raise RefusedError(f"piece {piece.id} is too narrow for walls with mould.draft_deg = {mould.draft_deg:g}; lower it in the profile")
-    slots, notes = plan_exits(pads, piece=piece.id, cavity=cavity, outer=_outer(cavity, mould), mould=mould) if len(pads) else ([], ())
-    # Either side of a slot a wall stays towards the lip; the way out is free as far as a lip of this seam reaches.
-    ways_out = shapely.union_all([slot_region(s, mould.wire_exit + 2 * mould.wall, longer=mould.lip + mould.wall) for s in slots])
-    lip = _lip_region(piece, brim, lips, ways_out, mould)
+    exits = _exits_and_lip(piece, cavity, brim, pads, lips, mould)
+    wire_slots = tuple(slot for slot in exits.slots if slot is not None)
+    notes = exit_warnings(pads, exits.slots, piece=piece.id, blocked=exits.blocked)
+    lip, outer = exits.lip, exits.outer
     lip_cut = _on_grid(lip.buffer(5 * MOULD_SLIT_MM + brim_at, join_style="mitre"))
-    outer = _outer(cavity | lip, mould)
-    through = [through_wall(slot, cavity=cavity, outer=outer) for slot in slots]
-    blocked = tuple(
-        f"piece {piece.id}: the wire of pad {s.terminal} of {s.sensor} near ({s.pad[0]:.1f}, {s.pad[1]:.1f}) mm finds its way out "
-        "blocked by lips, so it has no slot: lead it out over the wall's top"
-        for s, t in zip(slots, through, strict=True)
-        if t is None
-    )
-    wire_slots = tuple(slot for slot in through if slot is not None)
     # Past either end by as much as the end of an oblique slot is skewed.
     cuts = [slot_region(slot, mould.wire_exit, longer=mould.wire_exit) for slot in wire_slots if not slot.shared]
     wall = _on_grid(outer - cavity)
@@ -158,7 +152,6 @@ def mould_plan(
         wire_slots=wire_slots,
         warnings=(
             *notes,
-            *blocked,
             *_narrow_places(piece, cavity, _on_grid(wall - lip_cut), mould),
             *_short_lips(piece, lip.buffer(brim_at), lips),
         ),
@@ -231,6 +224,41 @@ def _outer(inside: BaseGeometry, mould: Mould) -> MultiPolygon:
     fill = mould.wall / 2
     grown = inside.buffer(mould.wall + fill, join_style="mitre", mitre_limit=2)
     return _on_grid(grown.buffer(-fill, join_style="mitre", mitre_limit=2))
+
+
+@dataclass(frozen=True, eq=False)
+class _Exits:
+    """Slots and lips, which make room for each other: a slot for each pad, or None, and which pads' ways ended at lips."""
+
+    slots: list[WireSlot | None]
+    blocked: frozenset[int]
+    lip: MultiPolygon
+    outer: MultiPolygon
+
+
+def _exits_and_lip(
+    piece: Piece,
+    cavity: MultiPolygon,
+    brim: MultiPolygon,
+    pads: Sequence[WirePad],
+    lips: Sequence[NDArray[np.float64]],
+    mould: Mould,
+) -> _Exits:
+    bare = _outer(cavity, mould)
+    barred: list[tuple[int, NDArray[np.float64]]] = []
+    for tries_left in reversed(range(_EXIT_TRIES)):
+        slots = plan_exits(pads, cavity=cavity, outer=bare, mould=mould, barred=barred) if len(pads) else []
+        # Either side of a slot a wall stays towards the lip; the way out is free as far as a lip of this seam reaches.
+        free = [slot_region(s, mould.wire_exit + 2 * mould.wall, longer=mould.lip + mould.wall) for s in slots if s is not None]
+        lip = _lip_region(piece, brim, lips, shapely.union_all(free), mould)
+        outer = _outer(cavity | lip, mould)
+        through = [s and through_wall(s, cavity=cavity, outer=outer) for s in slots]
+        blocked = [(k, s.at) for k, (s, t) in enumerate(zip(slots, through, strict=True)) if s is not None and t is None]
+        if not (blocked and tries_left):
+            break
+        # Lips of other seams are in the way: these wires look for another place, and the lips grow anew.
+        barred += blocked
+    return _Exits(through, frozenset(k for k, _ in (*barred, *blocked)), lip, outer)
 
 
 def _lip_region(

@@ -1,11 +1,11 @@
-"""How each wire leaves its mould: straight from its pad to a wall, clear of the other sensors' ink.
+"""How each wire leaves its mould: straight from its pad to a wall, clear of the other sensors' ink and of the other wires.
 
 A wire is pierced into the pad after curing, lies on the silicone and leaves through a slot in the wall.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -18,15 +18,14 @@ from skinfab.errors import InputError
 from skinfab.material import Mould
 from skinfab.placement.sensor import Sensor
 from skinfab.tolerances import MOULD_GRID_MM, PREVIEW_CHORD_MM
+from skinfab.wire_choice import CROSSING, choose_ways
+from skinfab.wire_ways import Edges, Ways, unit
 
-#: Directions tried from each pad, besides the one to the nearest wall: every 4 degrees.
-_DIRECTIONS = 90
+#: A way over another sensor weighs as much as so many crossings of wires: to insulate a wire is easier than to keep ink whole.
+_OVER_OTHERS = 5 * CROSSING
 
-#: A way that begins over the sensor's own side of the pad counts this much longer: behind the pad nothing is in the way of the hands.
-_AHEAD = 2.0
-
-#: A slot may run this many times the wall's width through it; more obliquely it would be a notch along the wall.
-_OBLIQUE = 2.0
+#: A way that lips may close is taken where it saves so many mm; if they do close it, the wire is led anew.
+_NARROW_MM = 40.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,170 +102,172 @@ def wire_pads(sensors: Sequence[Sensor]) -> list[WirePad]:
 
 
 def plan_exits(
-    pads: Sequence[WirePad], *, piece: str, cavity: MultiPolygon, outer: MultiPolygon, mould: Mould
-) -> tuple[list[WireSlot], tuple[str, ...]]:
-    """Choose a slot for each pad.
+    pads: Sequence[WirePad],
+    *,
+    cavity: MultiPolygon,
+    outer: MultiPolygon,
+    mould: Mould,
+    barred: Sequence[tuple[int, NDArray[np.float64]]] = (),
+) -> list[WireSlot | None]:
+    """Choose a slot for each pad; None where there is none to be had.
 
-    The way is straight from the pad to the wall, through no dart, and comes out at the outside. Of all such ways
-    the one is taken that crosses no other sensor, has room outside, and crosses not its own conductor and no other
-    wire, in this order, and of these the shortest. Two pads have two slots unless only one wall can be reached clear of the other sensors.
+    The way is straight from the pad to the wall, through no dart, and comes out at the outside. Ways are chosen such
+    that together they cross no other sensors, and as few conductors of their own and wires as can be, and of these
+    choices one with short wires. Two pads have two slots unless only one wall can be reached clear of the other sensors.
 
     Parameters
     ----------
     pads : sequence of WirePad
-    piece : str
-        Its id, for the warnings.
     cavity, outer : MultiPolygon
         The silicone, and what the walls enclose, lips left out.
     mould : Mould
-
-    Returns
-    -------
-    slots : list of WireSlot
-        In the order of `pads`, without those that have none.
-    warnings : tuple of str
-        Each pad that has none, shares one, or whose wire crosses another sensor.
+    barred : sequence of (pad, (2,) float)
+        The pad with this number cannot leave by this place of the silicone's edge, nor near it.
 
     Raises
     ------
     InputError
         A pad's place is not a point.
     """
-    slots: list[WireSlot] = []
-    notes: list[str] = []
-    edges = _Edges(cavity, outer)
     for pad in pads:
         if np.shape(pad.at) != (2,) or not np.isfinite(pad.at).all():
             raise InputError(f"{pad.name} is at {np.asarray(pad.at).tolist()}; it must be a point (x, y) in mm")
-        others = _lines([line for p in pads if p.sensor != pad.sensor for line in (p.ink, p.pad)])
-        own = _lines([pad.ink, *(p.pad for p in pads if p.sensor == pad.sensor and p.terminal != pad.terminal)])
-        slot, crosses = _own_slot(pad, own=own, others=others, taken=slots, edges=edges, mould=mould)
-        if slot is None or crosses:
-            shared = _shared_slot(pad, others, slots, cavity)
-            slot, crosses = (slot, crosses) if shared is None else (shared, False)
-        where = f"piece {piece}: the wire of {pad.name} near ({pad.at[0]:.1f}, {pad.at[1]:.1f}) mm"
+    edges = Edges(cavity, outer)
+    ways = [edges.ways(pad.at, away=pad.away, mould=mould) for pad in pads]
+    for k, at in barred:
+        ways[k] = ways[k].only(np.hypot(*(ways[k].wall[:, 0] - at).T) > mould.lip + mould.wall)
+    conductors = [_conductors(pad, pads) for pad in pads]
+    faults = [_faults(pad, each, near) for pad, each, near in zip(pads, ways, conductors, strict=True)]
+    # A wall half as wide as the others stays between two slots.
+    chosen = choose_ways(ways, faults, apart=mould.wire_exit + mould.wall / 2)
+    slots = [
+        None if c is None else WireSlot(pad.sensor, pad.terminal, pad.at, *each.wall[c])
+        for pad, each, c in zip(pads, ways, chosen, strict=True)
+    ]
+    reach = cavity.buffer(MOULD_GRID_MM)
+    for k, slot in enumerate(slots):
+        if slot is None or _over(slot, pads[k], conductors[k].others) is not None:
+            slots[k] = _shared_slot(pads[k], conductors[k], slots, reach) or slot
+    return slots
+
+
+def exit_warnings(
+    pads: Sequence[WirePad], slots: Sequence[WireSlot | None], *, piece: str, blocked: Collection[int] = ()
+) -> tuple[str, ...]:
+    """What the person who lays the wires must know: pads without a slot, shared slots, and all crossings.
+
+    Parameters
+    ----------
+    pads, slots : sequences of WirePad, WireSlot or None
+        As planned and cut, in the same order.
+    piece : str
+        Its id.
+    blocked : collection of int
+        The pads whose ways out end at lips.
+    """
+    notes: list[str] = []
+    for k, (pad, slot) in enumerate(zip(pads, slots, strict=True)):
+        where = f"piece {piece}: the wire of {pad.name} near {_mm(pad.at)}"
         if slot is None:
-            notes.append(f"{where} reaches no wall in a straight line, so it has no slot: lead it out over the wall's top")
+            why = "finds its way out blocked by lips" if k in blocked else "reaches no wall in a straight line"
+            notes.append(f"{where} {why}, so it has no slot: lead it out over the wall's top")
             continue
-        if crosses:
-            notes.append(f"{where} has no way out clear of the other sensors: keep it insulated up to its pad")
+        near = _conductors(pad, pads)
+        if (met := _over(slot, pad, near.others)) is not None:
+            notes.append(
+                f"{where} has no way out clear of the other sensors, which it crosses near {_mm(met)}: keep it insulated up to its pad"
+            )
+        if (met := _over(slot, pad, near.own)) is not None:
+            notes.append(f"{where} crosses its own conductor near {_mm(met)}: keep it insulated up to its pad")
         if slot.shared:
-            notes.append(f"{where} has no wall of its own in reach: it shares the slot at ({slot.at[0]:.1f}, {slot.at[1]:.1f}) mm")
-        slots.append(slot)
-    return slots, tuple(notes)
+            notes.append(f"{where} has no wall of its own in reach: it shares the slot at {_mm(slot.at)}")
+        for other, its in zip(pads[:k], slots[:k], strict=True):
+            if its is None or not _tangled(slot, [its]):
+                continue
+            cross = (_wire(slot) & _wire(its)).centroid  # a point, or the middle of what they have in common
+            notes.append(
+                f"piece {piece}: the wires of {other.name} and {pad.name} cross near {_mm(shapely.get_coordinates(cross)[0])}: "
+                "keep both insulated up to their pads"
+            )
+    return tuple(notes)
 
 
 def through_wall(slot: WireSlot, *, cavity: MultiPolygon, outer: MultiPolygon) -> WireSlot | None:
     """The slot prolonged to the outside of the finished wall; None where silicone or a pit is on its way."""
-    way = _unit(slot.out - slot.at)
-    rays = _Edges(cavity, outer).along(slot.at, way[None], wall=np.zeros(1))
-    return replace(slot, out=slot.at + rays.out[0] * way) if rays.out[0] < rays.again[0] else None
+    out = Edges(cavity, outer).out(slot.at, unit(slot.out - slot.at))
+    return None if out is None else replace(slot, out=out)
 
 
 def slot_region(slot: WireSlot, width: float, *, longer: float) -> BaseGeometry:
     """The slot as a strip from above, `longer` mm past either end."""
-    way = _unit(slot.out - slot.at)
+    way = unit(slot.out - slot.at)
     return shapely.LineString([slot.at - longer * way, slot.out + longer * way]).buffer(width / 2, cap_style="flat")
 
 
-def _own_slot(
-    pad: WirePad, *, own: BaseGeometry, others: BaseGeometry, taken: Sequence[WireSlot], edges: _Edges, mould: Mould
-) -> tuple[WireSlot | None, bool]:
-    """The best straight way through a wall that no slot takes up, and whether it crosses another sensor."""
-    angle = np.linspace(0, 2 * np.pi, _DIRECTIONS, endpoint=False)
-    nearest = shapely.get_coordinates(shapely.shortest_line(shapely.Point(pad.at), edges.shore))[1] - pad.at
-    ways = np.vstack([_unit(nearest), np.c_[np.cos(angle), np.sin(angle)]])
-    rays = edges.along(pad.at, ways)
-    # Each of these is false where the ray does not come out: infinity is not below infinity.
-    fits = (rays.out < rays.again) & (rays.out <= rays.wall + _OBLIQUE * mould.wall) & (rays.behind >= rays.out + mould.wall)
-    ways, wall, out = ways[fits], rays.wall[fits], rays.out[fits]
-    # Lips grow into what is outside now: where they would close a notch, the wire had better not go.
-    narrow = rays.behind[fits] < out + 2 * (mould.lip + mould.wall)
-    at, end = pad.at + wall[:, None] * ways, pad.at + out[:, None] * ways
-    if taken:
-        # A wall half as wide as the others stays between two slots.
-        apart = shapely.distance(_between(at, end), _lines([np.array([s.at, s.out]) for s in taken]))
-        free = apart >= mould.wire_exit + mould.wall / 2
-        ways, wall, at, end, narrow = ways[free], wall[free], at[free], end[free], narrow[free]
-    if not len(ways):
-        return None, False
-    wires = _between(np.broadcast_to(pad.at, at.shape), at)
-    crosses, crosses_own = (shapely.distance(wires, ink) < pad.bead / 2 for ink in (others, own))
-    # The wires before this one end at their slots: a way between a pad and its slot is tangled with them.
-    tangled = shapely.distance(wires, _lines([np.array([s.pad, s.at]) for s in taken])) <= 0
-    length = wall * np.where(ways @ pad.away < 0, _AHEAD, 1.0)
-    best = int(np.lexsort((length.round(6), tangled, crosses_own, narrow, crosses))[0])
-    return WireSlot(pad.sensor, pad.terminal, pad.at, at[best], end[best]), bool(crosses[best])
-
-
-def _shared_slot(pad: WirePad, others: BaseGeometry, slots: Sequence[WireSlot], cavity: MultiPolygon) -> WireSlot | None:
-    """The nearest slot of another pad that the wire reaches over silicone, clear of the other sensors."""
-    reach = cavity.buffer(MOULD_GRID_MM)
-    for slot in sorted(slots, key=lambda s: float(np.hypot(*(s.at - pad.at)))):
-        wire = shapely.LineString([pad.at, slot.at])
-        if reach.covers(wire) and not shapely.distance(wire, others) < pad.bead / 2:
-            return WireSlot(pad.sensor, pad.terminal, pad.at, slot.at, slot.out, shared=True)
-    return None
-
-
 @dataclass(frozen=True, eq=False)
-class _Rays:
-    """What each of some rays meets, in this order, mm from its start; infinite where it does not."""
+class _Conductors:
+    """What a pad's wire should not cross: other sensors with their pads, and its own beyond the pad."""
 
-    wall: NDArray[np.float64]  # where the silicone ends
-    out: NDArray[np.float64]  # where the ray then comes out at the outside
-    behind: NDArray[np.float64]  # where it meets the mould again
-    again: NDArray[np.float64]  # where it meets silicone again
+    others: BaseGeometry
+    own: BaseGeometry
 
 
-class _Edges:
-    """The edges of silicone and wall, to be met by rays."""
-
-    def __init__(self, cavity: MultiPolygon, outer: MultiPolygon) -> None:
-        self.shore = shapely.MultiLineString([ring for part in cavity.geoms for ring in (part.exterior, *part.interiors)])
-        self.cavity = _segments(list(self.shore.geoms))
-        self.outer = _segments([part.exterior for part in outer.geoms])
-        self.pits = _segments([ring for part in outer.geoms for ring in part.interiors])
-
-    def along(self, at: NDArray[np.float64], ways: NDArray[np.float64], *, wall: NDArray[np.float64] | None = None) -> _Rays:
-        """Rays from a point in the silicone, or from its edge where `wall` (zeros) says so."""
-        silicone, outside, pits = (_hits(at, ways, edges) for edges in (self.cavity, self.outer, self.pits))
-        wall = _next(silicone, np.zeros(len(ways))) if wall is None else wall
-        out = _next(outside, wall)
-        out = np.where(_next(pits, wall) < out, np.inf, out)
-        return _Rays(wall, out, _next(outside, out), _next(silicone, wall))
+def _conductors(pad: WirePad, pads: Sequence[WirePad]) -> _Conductors:
+    others = [line for p in pads if p.sensor != pad.sensor for line in (p.ink, p.pad)]
+    own = [pad.ink, *(p.pad for p in pads if p.sensor == pad.sensor and p.terminal != pad.terminal)]
+    # Where there is no pad the wire ends on the conductor itself: a bead from its end they must have parted.
+    return _Conductors(_lines(others), _lines(own) - shapely.Point(pad.at).buffer(pad.bead))
 
 
-def _hits(at: NDArray[np.float64], ways: NDArray[np.float64], edges: NDArray[np.float64]) -> NDArray[np.float64]:
-    """How far along each ray each edge is met, (ways, edges); infinite where it is not."""
-    along, to = edges[:, 1] - edges[:, 0], edges[:, 0] - at
-    x, y = ways.T[:, :, None]
-    with np.errstate(divide="ignore", invalid="ignore"):  # a ray beside an edge never meets it
-        det = x * along[:, 1] - y * along[:, 0]
-        t = (to[:, 0] * along[:, 1] - to[:, 1] * along[:, 0]) / det
-        s = (to[:, 0] * y - to[:, 1] * x) / det
-        return np.where((s >= 0) & (s <= 1) & (t > 0), t, np.inf)
+def _faults(pad: WirePad, ways: Ways, near: _Conductors) -> NDArray[np.float64]:
+    """What is wrong with each way whatever the other wires do, see `skinfab.wire_choice.choose_ways`."""
+    wires = shapely.linestrings(ways.wire)
+    over_others, over_own = (shapely.distance(wires, lines) < pad.bead / 2 for lines in (near.others, near.own))
+    return _OVER_OTHERS * over_others + CROSSING * over_own + _NARROW_MM * ways.narrow
 
 
-def _next(hits: NDArray[np.float64], after: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The first hit of each ray that is not at its place `after` itself."""
-    later: NDArray[np.float64] = np.where(hits > after[:, None] + MOULD_GRID_MM, hits, np.inf).min(axis=1, initial=np.inf)
-    return later
+def _shared_slot(pad: WirePad, near: _Conductors, slots: Sequence[WireSlot | None], reach: BaseGeometry) -> WireSlot | None:
+    """The slot of another pad that the wire reaches over silicone, clear of the other sensors: with few crossings, and near."""
+    found: list[tuple[int, float, int, WireSlot]] = []
+    for slot in slots:
+        if slot is None or slot.shared or (slot.sensor, slot.terminal) == (pad.sensor, pad.terminal):
+            continue
+        mine = WireSlot(pad.sensor, pad.terminal, pad.at, slot.at, slot.out, shared=True)
+        if reach.covers(_wire(mine)) and _over(mine, pad, near.others) is None:
+            crossings = len(_tangled(mine, slots)) + (_over(mine, pad, near.own) is not None)
+            found.append((crossings, float(np.hypot(*(slot.at - pad.at))), len(found), mine))
+    return min(found)[-1] if found else None
 
 
-def _segments(rings: Sequence[BaseGeometry]) -> NDArray[np.float64]:
-    """(n, 2, 2): the edges of closed rings."""
-    return np.concatenate([np.zeros((0, 2, 2)), *(np.stack([c[:-1], c[1:]], axis=1) for c in map(shapely.get_coordinates, rings))])
+def _over(slot: WireSlot, pad: WirePad, lines: BaseGeometry) -> NDArray[np.float64] | None:
+    """Where a wire lies on some conductor; None where it does not."""
+    wire = _wire(slot)
+    if not shapely.distance(wire, lines) < pad.bead / 2:
+        return None
+    return shapely.get_coordinates(shapely.shortest_line(lines, wire))[0]
 
 
-def _between(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.object_]:
-    return np.asarray(shapely.linestrings(np.stack([a, b], axis=1)))
+def _tangled(slot: WireSlot, slots: Sequence[WireSlot | None]) -> list[int]:
+    """Which of other wires cross this one; wires that meet in the slot they share do not."""
+    wire = _wire(slot)
+    return [
+        j
+        for j, s in enumerate(slots)
+        if s is not None
+        and (s.sensor, s.terminal) != (slot.sensor, slot.terminal)
+        and not np.array_equal(s.at, slot.at)
+        and wire.intersects(_wire(s))
+    ]
+
+
+def _wire(slot: WireSlot) -> BaseGeometry:
+    return shapely.LineString([slot.pad, slot.at])
+
+
+def _mm(at: NDArray[np.float64]) -> str:
+    return f"({at[0]:.1f}, {at[1]:.1f}) mm"
 
 
 def _lines(runs: Sequence[NDArray[np.float64]]) -> BaseGeometry:
     """All runs of two points or more as one geometry; nothing is infinitely far from an empty one."""
     return shapely.MultiLineString([run for run in runs if len(run) > 1])
-
-
-def _unit(way: NDArray[np.float64]) -> NDArray[np.float64]:
-    return way / max(float(np.hypot(*way)), np.finfo(float).tiny)

@@ -155,8 +155,8 @@ def _print(job: PrintJob, recipe: Recipe, material: Material) -> list[str]:
 def _wire(job: PrintJob, recipe: Recipe) -> str:
     slots = ", ".join(f"{s.sensor}-{s.terminal} by ({s.at[0]:.1f}, {s.at[1]:.1f})" for s in job.slots)
     return (
-        f"{job.piece}: once cured and still in the mould, pierce a stripped wire into each pad, lay it straight to its slot and out "
-        f"through it: {slots} (wire by slot, x and y in mm from the piece's origin in flat.svg). "
+        f"{job.piece}: once cured and still in the mould, pierce a wire stripped at its end into each pad, lay it straight to its slot and "
+        f"out through it: {slots} (wire by slot, x and y in mm from the piece's origin in flat.svg). "
         f"Seal each pad with a drop of {recipe.bond}. Measure each sensor between its two wires: wiring.csv of skinfab make has "
         "the interval for nine prints in ten, and the board and input that each wire goes to."
     )

@@ -26,7 +26,10 @@ FLOORS = (
     ("pieces", "flatten"),
     ("seams", "placement"),
     ("skin",),
-    ("document", "mould", "mould_plan", "mould_taper", "strip_plate", "wiring", "wire_exits", "recipe", "work_order", "drawings", "report"),
+    (
+        *("document", "mould", "mould_plan", "mould_taper", "strip_plate", "wiring", "wire_exits", "wire_ways", "wire_choice"),
+        *("recipe", "work_order", "drawings", "report"),
+    ),
     ("cli", "bench", "__main__"),
 )
 FLOOR_OF = {room: k for k, rooms in enumerate(FLOORS) for room in rooms}

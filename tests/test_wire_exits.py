@@ -10,20 +10,30 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely.geometry import MultiPolygon, Polygon, box
+from wire_crossings import crossings
 
 from skinfab.errors import InputError
 from skinfab.material import load_material
 from skinfab.patterns.contact_spiral import ContactSpiral
 from skinfab.patterns.strain_lines import StrainLines
 from skinfab.placement.sensor import Sensor
-from skinfab.wire_exits import WirePad, WireSlot, plan_exits, slot_region, through_wall, wire_pads
+from skinfab.wire_exits import WirePad, WireSlot, exit_warnings, plan_exits, slot_region, through_wall, wire_pads
 
 MOULD = load_material().mould
 
 
 def exits(pads: list[WirePad], cavity: Polygon, *, outer: Polygon | None = None) -> tuple[list[WireSlot], tuple[str, ...]]:
     walls = cavity.buffer(MOULD.wall, join_style="mitre") if outer is None else outer
-    return plan_exits(pads, piece="P1", cavity=MultiPolygon([cavity]), outer=MultiPolygon([walls]), mould=MOULD)
+    slots = plan_exits(pads, cavity=MultiPolygon([cavity]), outer=MultiPolygon([walls]), mould=MOULD)
+    assert [(s.sensor, s.terminal) for s in slots if s] == [(p.sensor, p.terminal) for p, s in zip(pads, slots, strict=True) if s]
+    return [s for s in slots if s is not None], exit_warnings(pads, slots, piece="P1")
+
+
+def all_said(pads: list[WirePad], slots: list[WireSlot], notes: tuple[str, ...]) -> bool:
+    """Each crossing has its sentence, and each sentence of a crossing is true."""
+    found = crossings(pads, slots)
+    said = [note for note in notes if "cross" in note or "clear of the other" in note]
+    return len(found) == len(said) and all(any(each in note for note in said) for each in found)
 
 
 def pad(sensor: str, x: float, y: float, *, terminal: int = 1, away: tuple[float, float] = (0, 0), ink: object = ()) -> WirePad:
@@ -58,17 +68,112 @@ def test_not_over_another_sensor() -> None:
 
 def test_a_pad_that_is_fenced_in_is_named() -> None:
     fence = [[10, 10], [20, 10], [20, 20], [10, 20], [10, 10]]
-    slots, notes = exits([pad("C1", 15, 15), pad("C2", 25, 15, ink=fence)], box(0, 0, 30, 30))
+    slots, notes = exits([pad("C1", 14, 15), pad("C2", 25, 15, ink=fence)], box(0, 0, 30, 30))
     assert len(slots) == 2
     assert notes == (
-        "piece P1: the wire of pad 1 of C1 near (15.0, 15.0) mm has no way out clear of the other sensors: keep it insulated up to its pad",
+        "piece P1: the wire of pad 1 of C1 near (14.0, 15.0) mm has no way out clear of the other sensors, "
+        "which it crosses near (10.0, 15.0) mm: keep it insulated up to its pad",
     )
 
 
 def test_own_conductor_is_gone_round() -> None:
     # It bars the way to the left; to the right the wall is farther.
-    (slot,), _ = exits([pad("C1", 10, 15, ink=[[5, 0], [5, 30]])], box(0, 0, 40, 30))
+    (slot,), notes = exits([pad("C1", 10, 15, ink=[[5, 0], [5, 30]])], box(0, 0, 40, 30))
+    assert notes == ()
     assert not shapely.LineString([[10, 15], slot.at]).intersects(shapely.LineString([[5, 0], [5, 30]]))
+
+
+def test_own_conductor_all_round_is_said() -> None:
+    fence = [[10, 10], [20, 10], [20, 20], [10, 20], [10, 10]]
+    pads = [pad("C1", 15, 14, ink=fence)]
+    slots, notes = exits(pads, box(0, 0, 30, 30))
+    assert notes == (
+        "piece P1: the wire of pad 1 of C1 near (15.0, 14.0) mm crosses its own conductor near (15.0, 10.0) mm: "
+        "keep it insulated up to its pad",
+    )
+    assert all_said(pads, slots, notes)
+
+
+def test_a_conductor_without_a_pad_is_not_crossed_where_the_wire_ends_on_it() -> None:
+    lead = [[10, 15], [30, 15]]
+    pads = [pad("C1", 10, 15, ink=lead, away=(-1, 0)), pad("C1", 30, 15, terminal=2, ink=lead, away=(-1, 0))]
+    slots, notes = exits(pads, box(0, 0, 34, 30))
+    assert notes == () and slots[0].at[0] == pytest.approx(0)
+    # Along the lead the wire does cross it: the whole piece is a slit as wide as the lead, with one way out.
+    slit, outer = box(0, 14.5, 40, 15.5), box(-20, -20, 41.6, 50)
+    pads = pads[:1]
+    slots, notes = exits(pads, slit, outer=outer)
+    assert slots[0].at[0] == pytest.approx(40) and len(notes) == 1 and "crosses its own conductor near (10.8, 15.0) mm" in notes[0]
+    assert all_said(pads, slots, notes)
+
+
+def test_terminals_in_an_order_opposite_to_the_rim() -> None:
+    # Pads in a row along a strip whose only thin wall is at its end, first come far away: one by one they would cross.
+    cavity, outer = box(0, 0, 60, 30), box(-20, -20, 61.6, 50)
+    for order in (1, -1):
+        pads = [pad(f"C{k}", 10 + 5 * k, 6 + 3 * (k % 3) * order + 8 * (order < 0), terminal=1) for k in range(8)][::order]
+        slots, notes = exits(pads, cavity, outer=outer)
+        assert len(slots) == 8 and crossings(pads, slots) == [] and notes == ()
+
+
+def test_no_wire_lies_across_another_where_each_has_its_own_way() -> None:
+    # Twelve sensors on a disk, listed in any order, the terminals of each turned to the middle: all ways out lead past two sensors.
+    rng = np.random.default_rng(4)
+    for _ in range(5):
+        pads = []
+        for k, angle in enumerate(rng.permutation(12) * np.pi / 6):
+            out, side = np.array([np.cos(angle), np.sin(angle)]), np.array([-np.sin(angle), np.cos(angle)])
+            for terminal, sign in ((1, 1), (2, -1)):
+                ink = [26 * out + sign * side, 36 * out + 3 * sign * side, 36 * out - 3 * sign * side, 26 * out - sign * side]
+                pads.append(pad(f"C{k}", *(24 * out + sign * side), terminal=terminal, away=tuple(-out), ink=ink))
+        slots, notes = exits(pads, shapely.Point(0, 0).buffer(45))
+        assert len(slots) == 24 and crossings(pads, slots) == [] and notes == ()
+
+
+def test_wires_that_must_cross_are_said() -> None:
+    pads = [pad("C1", 12, 20), pad("C2", 20, 28)]
+    slots = [
+        WireSlot("C1", 1, pads[0].at, np.array([40.0, 20]), np.array([41.6, 20])),
+        WireSlot("C2", 1, pads[1].at, np.array([20.0, 0]), np.array([20, -1.6])),
+    ]
+    notes = exit_warnings(pads, slots, piece="P7")
+    assert notes == ("piece P7: the wires of pad 1 of C1 and pad 1 of C2 cross near (20.0, 20.0) mm: keep both insulated up to their pads",)
+    assert all_said(pads, slots, notes)
+
+
+def test_what_is_said_is_of_the_slots_that_are_cut() -> None:
+    # The second wire lost its slot to a lip: the first crosses nothing any more.
+    pads = [pad("C1", 12, 20), pad("C2", 20, 28)]
+    first = WireSlot("C1", 1, pads[0].at, np.array([40.0, 20]), np.array([41.6, 20]))
+    (note,) = exit_warnings(pads, [first, None], piece="P1", blocked={1})
+    assert "pad 1 of C2 near (20.0, 28.0) mm finds its way out blocked by lips, so it has no slot" in note
+
+
+def test_a_place_that_is_barred_is_left_alone() -> None:
+    cavity = box(0, 0, 40, 30)
+    (slot,) = plan_exits(
+        [pad("C1", 4, 12)],
+        cavity=MultiPolygon([cavity]),
+        outer=MultiPolygon([cavity.buffer(MOULD.wall, join_style="mitre")]),
+        mould=MOULD,
+        barred=[(0, np.array([0.0, 12.0]))],
+    )
+    assert slot is not None and np.hypot(*(slot.at - [0, 12])) > MOULD.lip + MOULD.wall
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.integers(0, 10**6), st.integers(1, 9))
+def test_every_crossing_is_said(seed: int, sensors: int) -> None:
+    """Terminals anywhere on a disk, each sensor's conductor any zig-zag between them."""
+    rng = np.random.default_rng(seed)
+    pads = []
+    for k in range(sensors):
+        ends = rng.uniform(-25, 25, (2, 2))
+        ink = np.vstack([ends[0], ends.mean(axis=0) + rng.uniform(-4, 4, (3, 2)), ends[1]])
+        pads += [pad(f"C{k}", *ends[t], terminal=t + 1, away=(1, 0), ink=ink) for t in (0, 1)]
+    slots, notes = exits(pads, shapely.Point(0, 0).buffer(40))
+    assert len(slots) == len(pads)
+    assert all_said(pads, slots, notes)
 
 
 def test_two_pads_two_slots_with_wall_between() -> None:
@@ -83,8 +188,8 @@ def test_two_pads_two_slots_with_wall_between() -> None:
 
 def test_a_shared_slot_is_said() -> None:
     # Only at the right end a wall leads outside, the other sides are thick: there is room for one slot.
-    cavity, outer = box(0, 0, 30, 2.4), box(-20, -20, 31.6, 22.4)
-    slots, notes = exits([pad("C1", 20, 1.2, terminal=1), pad("C1", 10, 1.2, terminal=2)], cavity, outer=outer)
+    cavity, outer = box(0, 0, 30, 1.4), box(-20, -20, 31.6, 21.4)
+    slots, notes = exits([pad("C1", 20, 0.7, terminal=1), pad("C1", 10, 0.7, terminal=2)], cavity, outer=outer)
     assert [s.shared for s in slots] == [False, True]
     np.testing.assert_array_equal(slots[0].at, slots[1].at)
     assert (

@@ -10,11 +10,16 @@ import ezdxf
 import numpy as np
 import pytest
 import results
+from wire_crossings import crossings
 
 from gcode.emit import emit
 from gcode.parse import parse
 from gcode.printer import load_printer
 from skinfab.cli.main import main
+from skinfab.document import load_skin
+from skinfab.material import load_material
+from skinfab.mould import skin_moulds
+from skinfab.wire_exits import wire_pads
 
 ROOT = Path(__file__).parents[2]
 SKINFAB = Path(sys.executable).with_name("skinfab")
@@ -133,6 +138,14 @@ def test_moulds_hold_the_piece(made: tuple[str, Path, dict]) -> None:
         assert entry["cavity_ml"] == pytest.approx(area * 2.5 / 1000, rel=0.005)
         # Below the lip's shelf only the piece itself is open: the lower 2 of the 2.5 mm.
         assert results.cavity_ml(folder / entry["file"], 1.6, 2.0) == pytest.approx(area * 2.0 / 1000, rel=0.005)
+
+
+def test_every_wire_has_a_way_of_its_own(made: tuple[str, Path, dict]) -> None:
+    skin = load_skin(made[1] / "skin.skin")
+    for mould in skin_moulds(skin, material=load_material()):
+        pads = wire_pads(skin.sensors_on(mould.piece))
+        assert [(s.sensor, s.terminal) for s in mould.wire_slots] == [(p.sensor, p.terminal) for p in pads]
+        assert crossings(pads, mould.wire_slots) == [] and not any("wire" in note for note in mould.warnings)
 
 
 def test_drawings_have_true_arcs(made: tuple[str, Path, dict]) -> None:
