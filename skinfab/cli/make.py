@@ -140,7 +140,7 @@ def _cut_mesh(args: argparse.Namespace, watch: Stopwatch, progress: Progress) ->
     used = steps.profiles(args.printer, args.material)
     progress(0.0, "reading")
     with watch.phase("load"):
-        loaded = steps.load(args)
+        loaded = steps.load_to_cut(args)
     with watch.phase("segment"):
         flattened = steps.surface(args, loaded.mesh, usual=used.material.depth)
         steps.say(flattened.remarks)

@@ -32,7 +32,7 @@ def run(args: argparse.Namespace) -> int:
     from skinfab.progress import terminal_progress
     from skinfab.seams.cut import seam_length
 
-    loaded = steps.load(args)
+    loaded = steps.load_to_cut(args)
     flattened = steps.surface(args, loaded.mesh)
     used = steps.profiles(args.printer, args.material)
     with terminal_progress(quiet=args.json) as progress:

@@ -89,7 +89,13 @@ def add_mesh_options(p: argparse.ArgumentParser) -> None:
 
 
 def add_cut_options(p: argparse.ArgumentParser) -> None:
-    """Where to cut, and what pieces have to keep to."""
+    """What to cut and where, and what pieces have to keep to."""
+    p.add_argument(
+        "--wrap",
+        type=positive,
+        metavar="D",
+        help="skin the outside alone: bridge holes and gaps that a ball D mm across cannot enter (8 is a fingertip; see docs/wrapping.md)",
+    )
     p.add_argument("--cuts", metavar="FILE", type=Path, help="seams by hand: a text file of vertex paths (see docs/cuts.md); just these")
     p.add_argument("--complete", action="store_true", help="with --cuts: add automatic seams where those do not give good pieces")
     p.add_argument("--max-distortion", type=bound, default=4.05, metavar="D", help="mean d of a piece at most (default 4.05; 4 is perfect)")
@@ -118,10 +124,12 @@ def require_fitting_options(args: argparse.Namespace) -> None:
     """Options that do not go together are wrong usage."""
     if args.complete and args.cuts is None:
         args.wrong_usage("--complete goes with --cuts FILE")
+    if args.wrap is not None and args.cuts is not None:
+        args.wrong_usage("--cuts names vertices of the mesh file, and --wrap makes a surface of its own; give one of them")
     if args.mesh.suffix.lower() != ".skin":
         return
-    if args.cuts or args.units or args.repair or args.scale != 1.0:
-        args.wrong_usage("a skin document is cut and scaled already: --cuts, --units, --scale and --repair go with a mesh")
+    if args.cuts or args.units or args.repair or args.wrap or args.scale != 1.0:
+        args.wrong_usage("a skin document is cut and scaled already: --cuts, --units, --scale, --repair and --wrap go with a mesh")
     if args.thickness is not None or args.neutral != 0.5:
         args.wrong_usage("a skin document is flattened already: --thickness and --neutral go with a mesh")
 
@@ -133,6 +141,22 @@ def load(args: argparse.Namespace) -> Loaded:
     loaded = load_usable(args.mesh, units=args.units, scale=args.scale, mend=args.repair)
     say(loaded.notes)
     return loaded
+
+
+def load_to_cut(args: argparse.Namespace) -> Loaded:
+    """As `load`; with ``--wrap`` only the outside of it."""
+    loaded = load(args)
+    if args.wrap is None:
+        return loaded
+    from skinfab.mesh.wrap import WRAP_OFFSET, wrap
+
+    mesh = wrap(loaded.mesh, args.wrap)
+    note = (
+        f"only the outside is skinned: the object has {loaded.mesh.area:.0f} mm^2 of surface, what a ball of {args.wrap:g} mm can roll on "
+        f"{mesh.area:.0f}; the skin lies {args.wrap * WRAP_OFFSET:.2g} mm off the object"
+    )
+    say([note])
+    return replace(loaded, mesh=mesh, notes=(*loaded.notes, note))
 
 
 def counted(number: int, what: str) -> str:
