@@ -17,6 +17,7 @@ from gcode.check_grbl import grbl_findings
 from gcode.check_height import height_findings
 from gcode.check_ink import ink_findings, laid_pieces
 from gcode.check_lines import line_findings
+from gcode.check_mould import Mould, mould_findings, mould_notes
 from gcode.check_notes import notes
 from gcode.check_settings import setting_findings
 from gcode.check_wall import Wall, wall_findings
@@ -88,15 +89,19 @@ class Judgement:
     broken_off: str = ""
 
 
-def judge(text: str, printer: Printer, *, wall: Wall | None = None, bead_area: float | None = None) -> Judgement:
+def judge(
+    text: str, printer: Printer, *, mould: Mould | None = None, wall: Wall | None = None, bead_area: float | None = None
+) -> Judgement:
     """Everything about a G-code text.
 
     Parameters
     ----------
     text : str
     printer : Printer
+    mould : Mould, optional
+        What it is printed in: all ink must lie in it, and the nozzle keep off its wall.
     wall : Wall, optional
-        The mould's, where it is known.
+        The wall alone.
     bead_area : float, mm^2, optional
         Cross-section that the bead should have; the file's own head comes first, the bundled material last.
 
@@ -109,6 +114,7 @@ def judge(text: str, printer: Printer, *, wall: Wall | None = None, bead_area: f
     """
     judged, fault = trace_as_far(text, spindle=printer.spindle)
     laid = laid_pieces(judged, printer)
+    wall = mould.wall if mould else wall
     findings = [
         *(() if fault else file_findings(judged, printer)),
         *line_findings(text),
@@ -118,13 +124,15 @@ def judge(text: str, printer: Printer, *, wall: Wall | None = None, bead_area: f
         *height_findings(judged, printer),
         *ink_findings(judged, laid),
         *bead_findings(judged, laid, printer, meant_area(judged, bead_area)),
+        *(mould_findings(judged, laid, mould) if mould else ()),
         *(wall_findings(judged, wall, printer.nozzle) if wall else ()),
         *_retracts(judged, "mm^3 of ink" if printer.spindle else "mm of E"),
     ]
     for move in judged.moves:
         for what, remedy in _faults_of(move, printer):
             findings.append(Finding(move.line, what, remedy, move.pattern))
-    return Judgement(tuple(sorted(findings, key=lambda f: f.line)), tuple(notes(judged, printer)), str(fault or ""))
+    remarks = (*notes(judged, printer), *(mould_notes(text, mould) if mould else ()))
+    return Judgement(tuple(sorted(findings, key=lambda f: f.line)), remarks, str(fault or ""))
 
 
 def _faults_of(move: Move, printer: Printer) -> Iterator[tuple[str, str]]:

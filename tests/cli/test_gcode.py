@@ -1,6 +1,8 @@
 """`skinfab gcode` from the command line: files, findings, exit statuses."""
 
 import json
+import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -8,7 +10,7 @@ import pytest
 
 from gcode.words import read_text
 from skinfab.cli.main import main
-from skinfab.document import save_skin
+from skinfab.document import load_skin, save_skin
 from skinfab.mesh.model import Mesh
 from skinfab.patterns.contact_spiral import ContactSpiral
 from skinfab.pieces import Piece
@@ -112,6 +114,69 @@ def test_a_file_for_another_printer_gets_a_note(document: Path, tmp_path: Path, 
     assert told["notes"] == [] and told["ok"] is True and told["broken_off"] is None
 
 
+def test_check_in_the_mould_of_a_skin(document: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["gcode", str(document), "-o", str(tmp_path), "--printer", "generic-marlin"]) == 0
+    file = tmp_path / "P1.gcode"
+    capsys.readouterr()
+    check = ["gcode", "check", str(file), "--printer", "generic-marlin"]
+    assert main(check) == 0
+    assert capsys.readouterr().out.endswith("printer; the mould's wall was not judged, for that give --skin SKIN\n")
+    for more in ([], ["--piece", "P1"]):
+        assert main([*check, "--skin", str(document), *more]) == 0
+        assert capsys.readouterr().out == f"{file}: no fault found by these rules on generic Marlin printer in the mould of piece P1\n"
+    assert main([*check, "--skin", str(document), "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert told["piece"] == "P1" and told["not_judged"] == []
+    assert main([*check, "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert told["piece"] is None and told["not_judged"] == ["the mould's wall was not judged"]
+
+
+def test_the_printer_of_the_skin_is_the_one_judged_for(document: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    save_skin(replace(load_skin(document), printer="generic-grbl"), document)
+    assert main(["gcode", str(document), "-o", str(tmp_path)]) == 0
+    capsys.readouterr()
+    assert main(["gcode", "check", str(tmp_path / "P1.gcode"), "--skin", str(document)]) == 0
+    assert "on generic GRBL machine, pump as spindle in the mould of piece P1" in capsys.readouterr().out
+
+
+def test_a_file_beside_its_mould_or_over_its_wall(document: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["gcode", str(document), "-o", str(tmp_path)]) == 0
+    file = tmp_path / "P1.gcode"
+    text = read_text(file)
+    for shift, says in (
+        (90.0, "it lays ink outside piece P1, whose mould holds X135.0 to X215.0 and Y145.0 to Y205.0"),
+        (-25.0, "runs across"),
+    ):
+        body, park, rest = text.partition("; park")
+        file.write_text(re.sub(r"X(-?[\d.]+)", lambda m, by=shift: f"X{float(m[1]) + by:.4f}", body) + park + rest)
+        capsys.readouterr()
+        assert main(["gcode", "check", str(file)]) == 0
+        assert main(["gcode", "check", str(file), "--skin", str(document)]) == 3
+        said = capsys.readouterr().out
+        assert says in said and "pattern C1: " in said
+
+
+def test_which_piece_a_foreign_file_is_for(document: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["gcode", str(document), "-o", str(tmp_path)]) == 0
+    file = tmp_path / "P1.gcode"
+    text = read_text(file)
+    file.write_text(text.partition("\n")[2])  # without its first line it is anyone's
+    one = load_skin(document)
+    assert main(["gcode", "check", str(file), "--skin", str(document)]) == 0  # the only piece with sensors
+    save_skin(replace(one, sensors=()), document)
+    capsys.readouterr()
+    assert main(["gcode", "check", str(file), "--skin", str(document)]) == 1
+    assert f"{file}: it does not say which piece it is for; give --piece, one of P1" in capsys.readouterr().err
+    assert main(["gcode", "check", str(file), "--skin", str(document), "--piece", "P1"]) == 0
+    assert main(["gcode", "check", str(file), "--skin", str(document), "--piece", "P7"]) == 1
+    assert "there is no piece P7 in the skin; give --piece, one of P1" in capsys.readouterr().err
+    file.write_text(text.replace("; piece P1", "; piece P9"))
+    assert main(["gcode", "check", str(file), "--skin", str(document), "--piece", "P1"]) == 0
+    assert "note: its head says it is for piece P9, it is judged for piece P1" in capsys.readouterr().out
+    assert main(["gcode", "check", str(file), "--skin", str(tmp_path / "absent.skin")]) == 1
+
+
 def test_a_terminal_gets_one_line_for_each_kind_of_fault(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "many.gcode"
     moves = "".join(f"G0 X{400 + k} Y1\nG0 X1 Y1\n" for k in range(30))
@@ -175,6 +240,9 @@ def test_refused_and_unusable_skins(tmp_path: Path, capsys: pytest.CaptureFixtur
         ["check", "a", "b"],
         ["check", "a", "-o", "d"],
         ["check", "a", "--arcs", "lines"],
+        ["check", "a", "--piece", "P1"],
+        ["a.skin", "-o", "d", "--skin", "b.skin"],
+        ["a.skin", "-o", "d", "--piece", "P1"],
         [],
     ],
 )
