@@ -7,18 +7,17 @@ starting resistances spread by more than ten times). Least squares in ln R are t
 
 from __future__ import annotations
 
-import csv
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from skinfab.electrical import KOHM_MM_PER_OHM_CM
-from skinfab.errors import InputError, RefusedError
-from skinfab.material import Material
+from skinfab.errors import RefusedError
+from skinfab.material import Ink, Material
+from skinfab.strip_table import Strips
 
 #: The least that is fitted: with fewer strips sigma is not known to a factor of two, with fewer lengths a contact
 #: cannot be told from a line that does not grow as it should.
@@ -34,24 +33,12 @@ CONFIDENCE = 0.95
 #: How finely contacts are tried, in lengths of line that resist as much as both: 0, and steps of half a per cent.
 _TRIED = 3001
 
-#: A table larger than this is none of ours.
-TABLE_MAX_BYTES = 1_000_000
+#: A strip is called an outlier where scatter alone puts the farthest of so many as far off once in a hundred plates.
+OUTLIER_P = 0.01
 
-
-@dataclass(frozen=True)
-class Strips:
-    """Measured strips.
-
-    Parameters
-    ----------
-    length_mm, r_kohm : (n,) float
-    unmeasured : tuple of str
-        Lines of the table without a resistance: strips that broke or were not measured.
-    """
-
-    length_mm: NDArray[np.float64]
-    r_kohm: NDArray[np.float64]
-    unmeasured: tuple[str, ...] = ()
+#: The cross-section that conducts is that of the bead, or less where it is rough and broken: the paper's tables, which spread by
+#: fifteen times, are within this factor of it. Resistances in ohm or megaohm are a thousand times off.
+AREA_FACTOR = 30.0
 
 
 @dataclass(frozen=True)
@@ -68,6 +55,27 @@ class Estimate:
 
 
 @dataclass(frozen=True)
+class Outlier:
+    """The strip farthest from what the others lead one to expect.
+
+    Parameters
+    ----------
+    name : str
+    r_kohm, expected_kohm : float
+        As measured, and the model's median without it.
+    """
+
+    name: str
+    r_kohm: float
+    expected_kohm: float
+
+    def __str__(self) -> str:
+        times = self.r_kohm / self.expected_kohm
+        off = f"{times:.3g} times" if times > 1 else f"1/{1 / times:.3g} of"
+        return f"{self.name} has {self.r_kohm:.4g} kohm, {off} what the other strips lead one to expect"
+
+
+@dataclass(frozen=True)
 class StripFit:
     """What the strips tell.
 
@@ -81,6 +89,8 @@ class StripFit:
     misfit_p : float
         How likely means over each length lie as far from the model as these, if the model is right; one where
         each length has one strip.
+    outlier : Outlier, optional
+        A strip that does not belong to the others.
     """
 
     effective_area_mm2: Estimate
@@ -89,39 +99,7 @@ class StripFit:
     n: int
     lengths: int
     misfit_p: float
-
-
-def read_strips(path: str | Path) -> Strips:
-    """Read a CSV file with the columns length_mm and r_kohm; an empty r_kohm is a strip that was not measured.
-
-    Raises
-    ------
-    InputError
-        The file cannot be read, a column is missing, or a value is not a positive number.
-    """
-    path = Path(path)
-    try:
-        if path.stat().st_size > TABLE_MAX_BYTES:
-            raise InputError(f"{path} is too large for a table of strips; give the strips.csv that skinfab strips made")
-        rows = list(csv.DictReader(path.read_text(encoding="utf-8-sig").splitlines(), restval="", strict=True))
-    except OSError as fault:
-        raise InputError(f"{path}: {fault.strerror or fault}; give the strips.csv that skinfab strips made, filled in") from fault
-    except (UnicodeDecodeError, csv.Error) as fault:
-        raise InputError(f"{path} is not a CSV file: {fault}; save the table as CSV, UTF-8") from fault
-    measured: list[tuple[float, float]] = []
-    unmeasured = []
-    for number, row in enumerate(rows, start=2):
-        for name in ("length_mm", "r_kohm"):
-            if name not in row:
-                raise InputError(f"{path}: there is no column {name!r}; the first line names the columns, length_mm and r_kohm among them")
-        if not row["r_kohm"].strip():
-            unmeasured.append(f"line {number}")
-            continue
-        measured.append(
-            (_positive(row["length_mm"], f"{path}, line {number}: length_mm"), _positive(row["r_kohm"], f"{path}, line {number}: r_kohm"))
-        )
-    length, r = np.array(measured, dtype=float).reshape(-1, 2).T
-    return Strips(length, r, tuple(unmeasured))
+    outlier: Outlier | None = None
 
 
 def fit_strips(strips: Strips, *, resistivity_ohm_cm: float) -> StripFit:
@@ -173,10 +151,11 @@ def fit_strips(strips: Strips, *, resistivity_ohm_cm: float) -> StripFit:
     room = variance * stats.f.ppf(CONFIDENCE, 1, freedom) - (squares - squares[best])
     flat = variance * stats.f.ppf(CONFIDENCE, 1, freedom) - (((y - y.mean()) ** 2).sum() - squares[best])
     inside = room >= 0
+    outlier = _outlier(strips, rest - log_k[:, None], squares)
     if flat >= 0 or inside[-1]:
         raise RefusedError(
             f"with a scatter of {math.sqrt(variance):.2g} in ln R, {n} strips do not tell for sure that resistance grows with length; "
-            "measure more strips, or look for broken ones"
+            + (f"{outlier}: measure it again, or leave its r_kohm empty" if outlier else "measure more strips, or look for broken ones")
         )
     reach = np.sqrt(room[inside] / n)
     lowest, highest = log_k[inside] - reach, log_k[inside] + reach
@@ -200,6 +179,28 @@ def fit_strips(strips: Strips, *, resistivity_ohm_cm: float) -> StripFit:
         n,
         len(groups),
         _misfit(y, groups, float(squares[best])),
+        outlier,
+    )
+
+
+def require_plausible(fit: StripFit, ink: Ink) -> None:
+    """The area must be that of the bead, give or take a factor of ``AREA_FACTOR``.
+
+    Raises
+    ------
+    RefusedError
+        It is not, as where the resistances are in another unit.
+    """
+    area, bead = fit.effective_area_mm2.value, ink.bead_area_mm2
+    if bead / AREA_FACTOR <= area <= bead * AREA_FACTOR:
+        return
+    small = area < bead
+    times = bead / area if small else area / bead
+    hint = "are these ohm? Divide them by 1000" if small else "are these megaohm? Multiply them by 1000"
+    raise RefusedError(
+        f"the strips' resistances mean that {area:.3g} mm^2 conduct, {times:.3g} times {'less' if small else 'more'} than the bead's own "
+        f"{bead:.3g} mm^2: r_kohm must be in kilo-ohm and length_mm in mm; {hint}; otherwise check the ink's resistivity_ohm_cm "
+        "and bead_area_mm2 in the material profile"
     )
 
 
@@ -221,6 +222,25 @@ def _groups(length: NDArray[np.float64]) -> list[NDArray[np.int64]]:
     return [group for group in np.split(order, breaks) if len(group)]
 
 
+def _outlier(strips: Strips, off: NDArray[np.float64], squares: NDArray[np.float64]) -> Outlier | None:
+    """The strip without which the fit is better by more than scatter explains: the F test of a mean shift of one strip
+    (Cook and Weisberg, "Residuals and influence in regression", 1982, 2.2.2), with Bonferroni's bound over all strips.
+
+    `off` are the residuals about the mean for each contact tried, (q, n), and `squares` their sums of squares.
+    """
+    from scipy import stats
+
+    n = len(strips.length_mm)
+    without = squares[:, None] - n / (n - 1) * off**2
+    best = without.argmin(axis=0)
+    left = np.take_along_axis(without, best[None], axis=0)[0]
+    k = int(left.argmin())
+    gain = (float(squares.min()) - left[k]) / max(float(left[k]) / (n - 3), np.finfo(float).tiny)
+    if n * stats.f.sf(gain, 1, n - 3) >= OUTLIER_P:
+        return None
+    return Outlier(strips.name(k), float(strips.r_kohm[k]), float(strips.r_kohm[k]) / math.exp(off[best[k], k] * n / (n - 1)))
+
+
 def _misfit(y: NDArray[np.float64], groups: Sequence[NDArray[np.int64]], squares: float) -> float:
     """The F test of lack of fit, against the scatter within each length."""
     from scipy import stats
@@ -230,13 +250,3 @@ def _misfit(y: NDArray[np.float64], groups: Sequence[NDArray[np.int64]], squares
     if within < 1 or not pure > 0:
         return 1.0
     return float(stats.f.sf(max(squares - pure, 0.0) / between / (pure / within), between, within))
-
-
-def _positive(text: str, what: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if not 0 < value < math.inf:
-        raise InputError(f"{what} is {text!r}; it must be a positive number, or an empty r_kohm where a strip is broken")
-    return value

@@ -10,8 +10,8 @@ from skinfab.errors import InputError
 from skinfab.material import Material, load_material
 from skinfab.placement.check import validate
 from skinfab.skin import Skin
-from skinfab.strip_fit import read_strips
 from skinfab.strip_plate import strip_skin, write_strip_table
+from skinfab.strip_table import read_strips
 
 MATERIAL = load_material()
 WIDE = replace(MATERIAL, ink=replace(MATERIAL.ink, bead_width=1.6), gap=1.2, margin=2.0, pad=4.0)
@@ -36,7 +36,8 @@ def test_table_to_fill_in(tmp_path: Path) -> None:
     write_strip_table(plate(2), tmp_path / "strips.csv")
     lines = (tmp_path / "strips.csv").read_text().splitlines()
     assert lines[:2] == ["sensor,length_mm,r_kohm", "L640-1,640.0,"] and len(lines) == 7
-    assert len(read_strips(tmp_path / "strips.csv").unmeasured) == 6
+    with pytest.raises(InputError, match="is not filled in: the column r_kohm is empty for all 6 strips"):
+        read_strips(tmp_path / "strips.csv")
 
 
 @pytest.mark.parametrize("copies", [1, 9])

@@ -28,7 +28,12 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "standard errors, into a material profile for --material.",
     )
     p.add_argument("-o", "--output", metavar="DIR|MATERIAL.toml", type=Path, required=True, help="folder, or with --fit the new profile")
-    p.add_argument("--fit", metavar="FILE.csv", type=Path, help="measured strips: a table with the columns length_mm and r_kohm")
+    p.add_argument(
+        "--fit",
+        metavar="FILE.csv",
+        type=Path,
+        help="measured strips: a table with the columns length_mm and r_kohm, kilo-ohm; comma or semicolon between them",
+    )
     p.add_argument("--copies", metavar="N", type=int, help="strips of each length, 2 to 8 (default 4)")
     p.add_argument("--material", metavar="NAME|FILE.toml", help="material profile to begin from")
     p.add_argument("--printer", metavar="NAME|FILE", help="printer profile")
@@ -74,13 +79,17 @@ def _make(args: argparse.Namespace) -> int:
 def _fit(args: argparse.Namespace) -> int:
     from skinfab.files import atomic_write
     from skinfab.material import DEFAULT_MATERIAL, load_material, material_toml
-    from skinfab.strip_fit import fit_strips, fitted_material, read_strips
+    from skinfab.strip_fit import fit_strips, fitted_material, require_plausible
+    from skinfab.strip_table import read_strips
 
     material, strips = load_material(args.material or DEFAULT_MATERIAL), read_strips(args.fit)
     fit = fit_strips(strips, resistivity_ohm_cm=material.ink.resistivity_ohm_cm)
+    require_plausible(fit, material.ink)
     notes = _notes(fit)
     atomic_write(args.output, material_toml(fitted_material(material, fit), comments=[f"Fitted from {args.fit.name}.", *notes]))
     warnings = [f"{args.fit}: no resistance on {', '.join(strips.unmeasured)}; left out"] if strips.unmeasured else []
+    if fit.outlier is not None:
+        warnings.append(f"{fit.outlier}: measure it again, and leave its r_kohm empty if it is broken or bridged")
     if fit.misfit_p < MISFIT_P:
         warnings.append(f"the lengths' means do not lie on one line (p = {fit.misfit_p:.2g}): look for broken or bridged strips first")
     steps.say(warnings, kind="warning")

@@ -71,6 +71,22 @@ def test_what_cannot_be_told_is_refused(tmp_path: Path, capsys: pytest.CaptureFi
     assert "8 strips of 1 length" in capsys.readouterr().err and not (tmp_path / "m.toml").exists()
 
 
+def test_resistances_in_ohm_are_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    rows = [(length, 1000 * (0.63 * length / 0.4 + 10) * off) for length in (40, 160, 640) for off in (0.9, 1.0, 1.1)]
+    (tmp_path / "a.csv").write_text("length_mm;r_kohm\n" + "".join(f"{a};{r:.1f}\n".replace(".", ",") for a, r in rows))
+    assert main(["strips", "--fit", str(tmp_path / "a.csv"), "-o", str(tmp_path / "m.toml")]) == 3
+    assert "are these ohm? Divide them by 1000" in capsys.readouterr().err and not (tmp_path / "m.toml").exists()
+
+
+def test_a_broken_strip_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    rows = [(length, (0.63 * length / 0.4 + 10) * off) for length in (40, 160, 640) for off in (0.9, 1.0, 1.1, 1.05)]
+    rows[5] = (160, 9000.0)
+    (tmp_path / "a.csv").write_text("sensor,length_mm,r_kohm\n" + "".join(f"L{a}-{k},{a},{r:.1f}\n" for k, (a, r) in enumerate(rows)))
+    assert main(["strips", "--fit", str(tmp_path / "a.csv"), "-o", str(tmp_path / "m.toml")]) == 0
+    said = capsys.readouterr().err
+    assert "warning: L160-5 (line 7) has 9000 kohm, " in said and "times what the other strips lead one to expect: measure it again" in said
+
+
 @pytest.mark.parametrize(
     ("options", "status", "says"),
     [
