@@ -85,8 +85,12 @@ def nozzle_margin(printer: Printer, material: Material) -> float:
 def wall_findings(judged: Trace, wall: Wall, nozzle: Nozzle) -> Iterator[Finding]:
     """Findings about moves that come too near to the wall, in the order of the moves."""
     low = [(move, z) for move in judged.moves if (z := _lowest(move)) is not None and z < wall.top - _STEP and _known(move)]
-    for k in range(0, len(low), _AT_ONCE):
-        batch = low[k : k + _AT_ONCE]
+    if not low:
+        return
+    need = needed_room(wall, nozzle, min(z for _, z in low))
+    near = _near([move for move, _ in low], wall, need)
+    for k in range(0, len(near), _AT_ONCE):
+        batch = [low[i] for i in near[k : k + _AT_ONCE]]
         lowest = min(z for _, z in batch)
         if wall.room([_segment(move) for move, _ in batch]) >= needed_room(wall, nozzle, lowest) - _STEP:
             continue
@@ -94,6 +98,17 @@ def wall_findings(judged: Trace, wall: Wall, nozzle: Nozzle) -> Iterator[Finding
             room, need = wall.room([_segment(move)]), needed_room(wall, nozzle, z)
             if room < need - _STEP:
                 yield _finding(move, z, room, need, wall, nozzle)
+
+
+def _near(moves: list[Move], wall: Wall, room: float) -> list[int]:
+    """Which of the moves have a box within `room` (mm) of an edge's box: few of many, and only these are measured."""
+    import shapely
+
+    boxes = np.array([move.shape.bbox if move.shape else (move.end[:2],) * 2 for move in moves], dtype=float)
+    # The tree asks for no more of a box than its corners.
+    tree = shapely.STRtree(np.asarray(shapely.linestrings(np.stack([wall.edges.low, wall.edges.high], axis=1))))
+    found, _ = tree.query(np.asarray(shapely.linestrings(boxes + np.array([[-room], [room]]))))
+    return sorted(set(found.tolist()))
 
 
 def _lowest(move: Move) -> float | None:

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gcode.check import check_program
-from gcode.check_wall import needed_room, wall_findings, wall_of
+from gcode.check_wall import Wall, needed_room, wall_findings, wall_of
 from gcode.plan import plan
 from gcode.printer import Nozzle, Printer, load_printer
 from gcode.trace import Finding, trace
@@ -100,6 +100,25 @@ def test_many_moves_are_all_looked_at(make_piece: Callable[..., Piece], upright:
     assert not found(safe, make_piece(100, 100), upright)
     (fault,) = found(safe + "G1 X99.5 E8 F240\n", make_piece(100, 100), upright)
     assert fault.line == HEAD.count("\n") + 1501
+
+
+def test_only_moves_near_the_wall_are_measured(
+    make_piece: Callable[..., Piece], upright: Material, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    measured = 0
+    exact = Wall.room
+
+    def counted(wall: Wall, segments: list) -> float:
+        nonlocal measured
+        measured += len(segments)
+        return exact(wall, segments)
+
+    monkeypatch.setattr(Wall, "room", counted)
+    inner = "".join(f"G1 X{50 + k % 2} E0.3 F240\n" for k in range(1000))
+    arc = "G0 X97.16 Y50 F6000\nG3 X97.16 Y54 I0 J2 E20 F240\n"  # to X99.16 in its middle
+    assert not found(inner + arc, make_piece(100, 100), upright)
+    assert measured == 1
+    assert found(inner + arc.replace("97.16", "97.2"), make_piece(100, 100), upright)
 
 
 def test_a_thick_nozzle_is_refused_before_anything_is_written(
