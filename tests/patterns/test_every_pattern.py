@@ -3,6 +3,7 @@
 import dataclasses
 import math
 import re
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,8 +12,9 @@ from hypothesis import strategies as st
 from random_patterns import fault_of, mended, parameter_sets, patterns
 
 from skinfab.drawings.catalogue import catalogue
+from skinfab.errors import InputError
 from skinfab.paths import Arc, Line
-from skinfab.patterns.base import Pattern
+from skinfab.patterns.base import Pattern, PatternError
 from skinfab.patterns.registry import PATTERNS, make_pattern, parameters
 from skinfab.placement.check import own_clearance
 from skinfab.placement.sensor import Sensor
@@ -45,7 +47,7 @@ def test_length_is_what_sampling_measures(kind: str, data: st.DataObject) -> Non
 
 
 @every_pattern
-@hundreds
+@thousands
 @given(data=st.data(), angle=st.floats(-7, 7))
 def test_the_box_is_exact_at_any_angle(kind: str, data: st.DataObject, angle: float) -> None:
     path = data.draw(patterns(kind)).printed_path().transformed(angle=angle, shift=(0.0, 0.0))
@@ -56,6 +58,63 @@ def test_the_box_is_exact_at_any_angle(kind: str, data: st.DataObject, angle: fl
     arcs = [s for s in path.segments if isinstance(s, Arc)]
     missed = max((s.radius * (1 - np.cos(s.sweep / (2 * PARTS))) for s in arcs), default=0.0) + 1e-9
     assert (points.min(axis=0) <= low + missed).all() and (points.max(axis=0) >= high - missed).all()
+
+
+@every_pattern
+@thousands
+@given(data=st.data())
+def test_pads_are_squares_of_ink_at_the_terminals(kind: str, data: st.DataObject) -> None:
+    pattern = data.draw(patterns(kind))
+    path, printed = pattern.path(), pattern.printed_path()
+    if not pattern.pad:
+        assert printed.length == path.length
+        return
+    # Rows at most a bead apart, all of them as long as the square is wide, and the way from the first to the last.
+    reach = pattern.pad - pattern.bead
+    rows = max(math.ceil(reach / pattern.bead - 1e-9), 1) + 1
+    assert printed.length == pytest.approx(pattern.length + 2 * (rows + 1) * reach, rel=1e-9)
+    count = (len(printed.segments) - len(path.segments)) // 2
+    assert printed.segments[count].start == pytest.approx(path.start) and printed.segments[-count - 1].end == pytest.approx(path.end)
+    for strokes, terminal, outward in ((printed.segments[:count], path.start, -1), (printed.segments[-count:], path.end, 1)):
+        corners = np.vstack([s.bbox for s in strokes])
+        low, high = corners.min(axis=0), corners.max(axis=0)
+        # With half a bead all round it is `pad` wide; it begins at the terminal and grows away from the other one.
+        np.testing.assert_allclose(high - low + pattern.bead, pattern.pad, rtol=1e-9)
+        np.testing.assert_allclose([high[0], (low if outward > 0 else high)[1]], terminal, atol=1e-7)
+
+
+#: Numbers that somebody may type: the wrong sign, the wrong unit, next to nothing.
+EXTREMES = st.sampled_from([-1e300, -7, -1e-9, 0, 1e-300, 1e-9, 0.05, 999.999, 1000, 1001, 1e6, 1e300])
+
+
+@every_pattern
+@thousands
+@given(data=st.data())
+def test_any_numbers_are_drawn_or_refused_by_name(kind: str, data: st.DataObject) -> None:
+    params = data.draw(parameter_sets(kind))
+    numbers = [name for name, value in params.items() if not isinstance(value, bool)]
+    for name in data.draw(st.sets(st.sampled_from(numbers), min_size=1)):
+        params[name] = data.draw(EXTREMES)
+    fault = failure(kind, params)
+    if fault is None:
+        pattern = make_pattern(kind, params)
+        assert math.isfinite(pattern.length) and np.isfinite(pattern.printed_path().bbox).all()
+    elif isinstance(fault, PatternError):
+        assert fault.parameter in params and str(fault).startswith(f"{kind}: {fault.parameter} is ")
+        # The nearest value keeps this bound, though others may be broken as well.
+        after = failure(kind, {**params, fault.parameter: fault.nearest})
+        assert after is None or str(after).split("; the nearest")[0] != str(fault).split("; the nearest")[0]
+    else:
+        # No value of this parameter would do on any bed: it is named, and so is what to do.
+        assert re.match(rf"{kind}: ({'|'.join(params)}) would have to be at least .* make the other parameters smaller", str(fault))
+
+
+def failure(kind: str, params: dict[str, Any]) -> InputError | None:
+    try:
+        make_pattern(kind, params)
+    except InputError as fault:
+        return fault
+    return None
 
 
 @every_pattern
@@ -87,7 +146,8 @@ def test_advice_works_and_is_the_nearest(kind: str, data: st.DataObject) -> None
 def test_what_is_left_out_breaks_no_bound(kind: str, data: st.DataObject) -> None:
     params = data.draw(parameter_sets(kind))
     own = sorted(set(params) - set(PATTERNS[kind].required()))
-    given = {name: value for name, value in params.items() if name not in data.draw(st.sets(st.sampled_from(own)))}
+    left_out = data.draw(st.sets(st.sampled_from(own)))
+    given = {name: value for name, value in params.items() if name not in left_out}
     fault = fault_of(kind, given)
     # The common three have values of their own, which a given one may not go with: a pad narrower than two given beads.
     assert fault is None or fault.parameter in {*given, "pad"}, str(fault)
