@@ -103,8 +103,8 @@ def bead_radius(move: Move | None, printer: Printer) -> float:
     return math.sqrt(max(move.e, 0.0) / printer.pump.e_per_mm3 / move.shape.length / math.pi)
 
 
-def crosses_ink(run: Shape, laid: Laid, radius: float, *, leaves: bool) -> bool:
-    """Does a straight run come within a bead's `radius` (mm) of laid ink?
+def crosses_ink(run: Shape, laid: Laid, radius: float, *, leaves: bool, spare: float = 0.0) -> bool:
+    """Does a straight run come within a bead's `radius` and some `spare` (mm) of laid ink?
 
     Where it `leaves` the end of that ink, its first part, one radius long, lies on the bead by necessity.
     """
@@ -114,7 +114,7 @@ def crosses_ink(run: Shape, laid: Laid, radius: float, *, leaves: bool) -> bool:
             return False
         start = run.point_at(radius / run.length)
     # The chords may lie inside an arc by their tolerance, and places are rounded.
-    return laid.distance((start, run.end), within=radius) < radius - PREVIEW_CHORD_MM - STEP_XY
+    return laid.distance((start, run.end), within=radius + spare) < radius + spare - PREVIEW_CHORD_MM - STEP_XY
 
 
 def free_length(
@@ -124,6 +124,7 @@ def free_length(
     for tenths in range(10, 0, -1):
         length = wanted * tenths / 10
         run = Straight(start, (start[0] + direction[0] * length, start[1] + direction[1] * length))
-        if not crosses_ink(run, laid, radius, leaves=leaves):
+        # Arcs may be emitted as other chords than they are judged by here: what is planned keeps that much more room.
+        if not crosses_ink(run, laid, radius, leaves=leaves, spare=PREVIEW_CHORD_MM):
             return length
     return 0.0

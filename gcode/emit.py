@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import Literal
 
@@ -88,12 +89,15 @@ def emit_comment(text: str) -> list[str]:
 
 
 def with_chords(program: Program, *, tolerance: float) -> Program:
-    """The program with every arc as chords that leave it by at most `tolerance` mm; the ink stays the same."""
+    """The program with every arc as chords that leave it by at most `tolerance` mm; the ink stays the same, and so does its flow."""
     steps: list[Step] = []
     for step in program.steps:
         if isinstance(step, Extrude) and isinstance(step.shape, Curve):
             chords = step.shape.chords(tolerance)
-            steps += [Extrude(chord, step.volume / len(chords), step.speed) for chord in chords]
+            # Chords are shorter than their arc: as fast as along it, a head at the flow's limit would be beyond it.
+            total = math.fsum(chord.length for chord in chords)
+            speed = step.speed * (total / step.shape.length)
+            steps += [Extrude(chord, step.volume * (chord.length / total), speed) for chord in chords]
         else:
             steps.append(step)
     return replace(program, steps=tuple(steps))

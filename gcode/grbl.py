@@ -52,7 +52,7 @@ class SpindleGrid(InkGrid):
     def __init__(self, spindle: Spindle, program: Program) -> None:
         super().__init__(1.0)
         self.spindle = spindle
-        rates = sorted({_asked(step, spindle) for step in program.steps if isinstance(step, Extrude)})
+        rates = sorted({spindle_s(step, spindle) for step in program.steps if isinstance(step, Extrude)})
         self.rate: dict[float, float] = {}  # S of the file for S as asked for
         lowest = 0.0
         for s in rates:
@@ -68,7 +68,7 @@ class SpindleGrid(InkGrid):
     def laid(self, step: Extrude, shape: Shape) -> Extrude:
         """A rounded shape of a step; nothing is carried on, for the ink per mm is that of the step, whatever its length became."""
         self.owed = 0.0
-        asked = _asked(step, self.spindle)
+        asked = spindle_s(step, self.spindle)
         s = self.rate[asked]
         speed = speed_on_grid(step.speed * (s / asked), decimals=F_DECIMALS)
         return Extrude(shape, volume_along(shape, s / self.spindle.s_per_flow, speed), speed)
@@ -81,14 +81,8 @@ def s_on_grid(flow: float, spindle: Spindle) -> float:
 
 
 def spindle_s(step: Extrude, spindle: Spindle) -> float:
-    """S of a step on the grid."""
+    """S that a step needs at its speed."""
     return s_on_grid(step.volume * step.speed / step.shape.length, spindle)
-
-
-def _asked(step: Extrude, spindle: Spindle) -> float:
-    """S that a step needs at the speed it asks for."""
-    speed = speed_on_grid(step.speed, decimals=F_DECIMALS)
-    return s_on_grid(step.volume / step.shape.length * speed, spindle)
 
 
 def _s_decimals(spindle: Spindle) -> int:

@@ -132,10 +132,10 @@ class _Planner:
         first, last = shapes[0].start, shapes[-1].end
         inked = self._run(name, "print-overrun", first, (-dx, -dy), process.print_overrun, leaves=False)
         entry = self._run(name, "start overrun", inked, (-dx, -dy), process.overrun_start, leaves=False)
-        slow = motion.straight_speed
+        slow = min(motion.straight_speed, motion.max_speed)
         self.steps += [
             Comment(f"pattern {name}"),
-            Travel(*entry, speed=motion.travel_speed),
+            Travel(*entry, speed=min(motion.travel_speed, motion.max_speed)),
             Travel(z=self.printer.heights.print, speed=motion.z_speed),
         ]
         if entry != inked:
@@ -171,7 +171,7 @@ class _Planner:
             self.steps.append(Travel(z=place.height, speed=self.printer.motion.z_speed))
         self.steps += [*first, Clean(place.seconds)]
         if place.wipe:
-            slow = self.printer.motion.straight_speed
+            slow = min(self.printer.motion.straight_speed, self.printer.motion.max_speed)
             self.steps += [Travel(x + place.wipe, y, speed=slow), Travel(x, y, speed=slow)]
         if low:
             self._lift()
@@ -186,8 +186,8 @@ class _Planner:
         self.steps.append(Travel(z=self.printer.heights.travel, speed=self.printer.motion.z_speed))
 
     def _go_to(self, place: Cleaning | Park) -> None:
-        origin = self.printer.bed.origin
-        self.steps.append(Travel(place.x + origin[0], place.y + origin[1], speed=self.printer.motion.travel_speed))
+        origin, motion = self.printer.bed.origin, self.printer.motion
+        self.steps.append(Travel(place.x + origin[0], place.y + origin[1], speed=min(motion.travel_speed, motion.max_speed)))
 
     def _pump_rate(self) -> float:
         pump = self.printer.pump
