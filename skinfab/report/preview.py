@@ -13,6 +13,7 @@ import numpy as np
 from skinfab.drawings.sheet import sheet_offsets
 from skinfab.files import atomic_write
 from skinfab.flatten.distortion import Distortion
+from skinfab.pieces import Piece
 from skinfab.report.labels import Room, dense
 from skinfab.report.object_view import SEAM_COLOUR, SENSOR_COLOUR, Picture, View, object_picture, piece_colour, sensor_points
 from skinfab.report.raster import rasterise
@@ -31,6 +32,8 @@ _ELEVATION = 22.0  # degrees
 _DPI = 150
 #: Pixels between a label and any line.
 _CLEAR = 3.0
+#: So many flat pieces can be told apart and named on a panel; `flat.pdf` has a sheet for each of them.
+_MOST = 20
 #: As many names fit in a title.
 _FEW = 4
 #: A label farther from what it names than this, pixels, gets a line to it.
@@ -54,9 +57,31 @@ def draw_preview(skin: Skin, distortions: Sequence[Distortion], report: Mapping[
     below = figure.add_gridspec(1, 2, left=0.03, right=0.945, top=0.515, bottom=0.02, wspace=0.06)
     _draw_object(figure.add_subplot(top[0, 0]), skin)
     _draw_numbers(figure.add_subplot(top[0, 1]), report)
-    _draw_sheet(figure.add_subplot(below[0, 0]), skin)
-    _draw_distortion(figure.add_subplot(below[0, 1]), skin, distortions)
+    shown = shown_pieces(skin)
+    _draw_sheet(figure.add_subplot(below[0, 0]), skin, shown)
+    _draw_distortion(figure.add_subplot(below[0, 1]), skin, distortions, shown)
     atomic_write(path, _png(figure))
+
+
+def shown_pieces(skin: Skin) -> list[int]:
+    """Positions of the flat pieces that are shown, in order: all, or those with sensors first and then the largest, 20 at most."""
+    sensed = {sensor.piece for sensor in skin.sensors}
+    order = sorted(range(len(skin.pieces)), key=lambda k: (skin.pieces[k].id not in sensed, -skin.pieces[k].area, k))
+    return sorted(order[:_MOST])
+
+
+def _offsets(pieces: Sequence[Piece]) -> np.ndarray:
+    """Where the pieces lie on a panel, with room for their names between them however small they are drawn."""
+    longest = max((max(piece.size) for piece in pieces), default=0.0)
+    offsets: np.ndarray = sheet_offsets(pieces, spacing=max(10.0, 0.05 * longest * len(pieces) ** 0.5))
+    return offsets
+
+
+def _of_all(skin: Skin, shown: Sequence[int]) -> str:
+    """For a title: which of the pieces are shown where not all are."""
+    if len(shown) == len(skin.pieces):
+        return ""
+    return f"{len(shown)} of {len(skin.pieces)} pieces, those with sensors and the largest; flat.pdf has all"
 
 
 def _draw_object(axes: Axes, skin: Skin) -> None:
@@ -102,21 +127,24 @@ def _name_parts(axes: Axes, skin: Skin, picture: Picture, *, left: float) -> Non
             _with_halo(axes, (left + place[0], place[1]), piece.id, size=9, colour=(0.35, 0.0, 0.0))
 
 
-def _draw_sheet(axes: Axes, skin: Skin) -> None:
+def _draw_sheet(axes: Axes, skin: Skin, shown: Sequence[int]) -> None:
     """The flat pieces with their sensors, to scale, each with the origin of its own coordinates."""
     from matplotlib.collections import LineCollection, PolyCollection
 
-    offsets = sheet_offsets(skin.pieces)
-    outlines = [piece.outline + offset for piece, offset in zip(skin.pieces, offsets, strict=True)]
-    colours = [piece_colour(k) for k in range(len(outlines))]
+    pieces = [skin.pieces[k] for k in shown]
+    offsets = _offsets(pieces)
+    outlines = [piece.outline + offset for piece, offset in zip(pieces, offsets, strict=True)]
+    colours = [piece_colour(k) for k in shown]
     axes.add_collection(PolyCollection(outlines, facecolors=colours, edgecolors=[SEAM_COLOUR], linewidths=0.9))
-    _sheet_axes(axes, outlines, "Flat pieces and sensors; + is the origin (0, 0) of a piece, sizes in mm")
+    which = _of_all(skin, shown) or "Flat pieces and sensors; + is the origin (0, 0) of a piece, sizes in mm"
+    _sheet_axes(axes, outlines, which)
     sheet = _Sheet(axes)
     for outline in outlines:
         sheet.take(outline, closed=True)
     points_per_mm = 72 / _DPI * sheet.pixels_per_mm
-    names = {piece.id: offset for piece, offset in zip(skin.pieces, offsets, strict=True)}
-    for sensor in skin.sensors:
+    names = {piece.id: offset for piece, offset in zip(pieces, offsets, strict=True)}
+    sensors = [sensor for sensor in skin.sensors if sensor.piece in names]
+    for sensor in sensors:
         line = sensor.printed_path.to_polyline(tolerance=PREVIEW_CHORD_MM) + names[sensor.piece]
         bead = max(sensor.pattern.bead * points_per_mm, 0.5)
         axes.add_collection(LineCollection([line], colors=[SENSOR_COLOUR], linewidths=bead, capstyle="round", joinstyle="round"))
@@ -125,15 +153,16 @@ def _draw_sheet(axes: Axes, skin: Skin) -> None:
         # The lower left corner of its box, where it counts from.
         axes.plot(*offset, marker="+", color="black", markersize=7, markeredgewidth=1.0)
         sheet.take(offset[None], width=14)
-    sheet.scale_bar()
-    for sensor in skin.sensors:
+    for sensor in sensors:
         # Behind the pads, where the wires will be.
         pads = (sensor.path.start + sensor.path.end) / 2
         behind = pads - (sensor.pattern.pad + 2.0) * np.array([np.cos(sensor.angle), np.sin(sensor.angle)])
         sheet.label([sensor.id], near=behind + names[sensor.piece], of=pads + names[sensor.piece], size=9, colour="white", box="black")
-    for piece, offset in zip(skin.pieces, offsets, strict=True):
+    for piece, offset in zip(pieces, offsets, strict=True):
         width, height = piece.size
         sheet.label([f"{piece.id}  {width:.0f} x {height:.0f}", piece.id], near=offset, of=offset, size=9, colour="black", box="white")
+    # Wherever there is room left: it belongs to no piece.
+    sheet.scale_bar()
 
 
 class _Sheet:
@@ -202,17 +231,18 @@ def round_length(longest: float) -> float:
     return float(max(digit * power for digit in (1, 2, 5) if digit * power <= longest))
 
 
-def _draw_distortion(axes: Axes, skin: Skin, distortions: Sequence[Distortion]) -> None:
+def _draw_distortion(axes: Axes, skin: Skin, distortions: Sequence[Distortion], shown: Sequence[int]) -> None:
     """The flat pieces coloured by d, on a colour bar that is the same for every skin."""
     from matplotlib.collections import LineCollection
 
-    offsets = sheet_offsets(skin.pieces)
-    outlines = [piece.outline + offset for piece, offset in zip(skin.pieces, offsets, strict=True)]
+    pieces = [skin.pieces[k] for k in shown]
+    offsets = _offsets(pieces)
+    outlines = [piece.outline + offset for piece, offset in zip(pieces, offsets, strict=True)]
     _sheet_axes(axes, outlines, "Distortion d on the flat pieces (4 is perfect)")
     extent = (*axes.get_xlim(), *axes.get_ylim())
     box = axes.get_window_extent()
     image = axes.imshow(
-        _distortion_image(skin, distortions, offsets, extent, (int(box.height), int(box.width))),
+        _distortion_image(pieces, [distortions[k] for k in shown], offsets, extent, (int(box.height), int(box.width))),
         extent=extent,
         origin="lower",
         interpolation="nearest",
@@ -227,14 +257,14 @@ def _draw_distortion(axes: Axes, skin: Skin, distortions: Sequence[Distortion]) 
 
 
 def _distortion_image(
-    skin: Skin, distortions: Sequence[Distortion], offsets: np.ndarray, extent: tuple[float, ...], shape: tuple[int, int]
+    pieces: Sequence[Piece], distortions: Sequence[Distortion], offsets: np.ndarray, extent: tuple[float, ...], shape: tuple[int, int]
 ) -> np.ndarray:
     """d of the face each pixel shows, NaN where there is none: (rows, columns), lowest row first."""
-    if not skin.pieces:
+    if not pieces:
         return np.full(shape, np.nan)
-    UV = np.vstack([piece.UV + offset for piece, offset in zip(skin.pieces, offsets, strict=True)])
-    first = np.cumsum([0, *(len(piece.UV) for piece in skin.pieces)])
-    F = np.vstack([piece.F + start for piece, start in zip(skin.pieces, first, strict=False)])
+    UV = np.vstack([piece.UV + offset for piece, offset in zip(pieces, offsets, strict=True)])
+    first = np.cumsum([0, *(len(piece.UV) for piece in pieces)])
+    F = np.vstack([piece.F + start for piece, start in zip(pieces, first, strict=False)])
     d = np.append(np.concatenate([each.d for each in distortions]), np.nan)
     left, right, bottom, top = extent
     at = (UV - (left, bottom)) / (right - left, top - bottom) * (shape[1], shape[0]) - 0.5

@@ -14,7 +14,7 @@ from skinfab.progress import PHASES
 from skinfab.report.build import build_report
 from skinfab.report.labels import dense
 from skinfab.report.object_view import SEAM_COLOUR, SENSOR_COLOUR, View, object_picture, on_object, piece_colour, sensor_points
-from skinfab.report.preview import _draw_sheet, _figure, draw_preview
+from skinfab.report.preview import _draw_sheet, _figure, draw_preview, shown_pieces
 from skinfab.skin import Skin, Source
 
 TIMING = {**dict.fromkeys(PHASES, 0.5), "total": 3.5}
@@ -61,6 +61,24 @@ def test_strange_names_are_drawn_as_text(file: str, skin: Skin, distortions: lis
 def test_many_pieces_and_no_sensors(skin: Skin, distortions: list[Distortion], tmp_path: Path) -> None:
     many = tuple(dataclasses.replace(skin.pieces[0], id=f"P{k}") for k in range(14))
     preview(dataclasses.replace(skin, pieces=many, sensors=()), distortions * 14, tmp_path)
+
+
+def test_of_very_many_pieces_those_that_matter_are_shown_and_named(skin: Skin, distortions: list[Distortion], tmp_path: Path) -> None:
+    small = [dataclasses.replace(skin.pieces[0], id=f"P{k + 2}", UV=skin.pieces[0].UV * (0.05 + 0.01 * (k % 17))) for k in range(105)]
+    # The one with sensors is the smallest of them.
+    many = dataclasses.replace(skin, pieces=(*small, dataclasses.replace(skin.pieces[0], UV=skin.pieces[0].UV / 30)))
+    shown = shown_pieces(many)
+    assert len(shown) == 20 and shown[-1] == 105 and shown == sorted(shown)
+    areas = [piece.area for piece in many.pieces]
+    assert min(areas[k] for k in shown[:-1]) >= sorted(areas)[-20]
+    axes = _figure(6.0, 5.0).add_subplot()
+    _draw_sheet(axes, dataclasses.replace(many, sensors=()), shown[:-1])
+    named = [text.get_text().split()[0] for text in axes.texts if text.get_text().startswith("P")]
+    assert sorted(named) == sorted(many.pieces[k].id for k in shown[:-1])
+    assert axes.get_title(loc="left") == "19 of 106 pieces, those with sensors and the largest; flat.pdf has all"
+    # Names stand by their pieces: hardly any needs a line to it.
+    assert sum(line.get_linewidth() == 0.6 for line in axes.lines) <= 3
+    preview(dataclasses.replace(many, sensors=()), distortions * 106, tmp_path)
 
 
 def test_front_and_back_of_a_box(skin: Skin) -> None:
@@ -114,7 +132,7 @@ def test_points_of_the_flat_piece_find_their_place_on_the_object(skin: Skin) -> 
 def test_the_scale_bar_is_as_long_as_it_says(skin: Skin) -> None:
     figure = _figure(6.0, 5.0)
     axes = figure.add_subplot()
-    _draw_sheet(axes, skin)
+    _draw_sheet(axes, skin, shown_pieces(skin))
     (text,) = [t.get_text() for t in axes.texts if t.get_text().endswith(" mm")]
     bars = [np.asarray(line.get_xdata(), dtype=float) for line in axes.lines if line.get_linewidth() == 2.0]
     assert [np.ptp(bar) for bar in bars] == [pytest.approx(float(text.removesuffix(" mm")))]
@@ -124,7 +142,7 @@ def test_the_scale_bar_is_as_long_as_it_says(skin: Skin) -> None:
 def test_labels_of_the_sheet_cover_neither_lines_nor_each_other(skin: Skin) -> None:
     figure = _figure(6.0, 5.0)
     axes = figure.add_subplot()
-    _draw_sheet(axes, skin)
+    _draw_sheet(axes, skin, shown_pieces(skin))
     figure.canvas.draw()
     boxes = [text.get_window_extent() for text in axes.texts]
     assert {text.get_text() for text in axes.texts} >= {"S1", "C1", "P1  240 x 50"}
