@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from skinfab.cli import steps
+from skinfab.cli.advice import many_pieces
 from skinfab.cli.alike import alike
 from skinfab.cli.nozzle_room import with_room_for_nozzle
 
@@ -149,7 +150,9 @@ def _cut_mesh(args: argparse.Namespace, watch: Stopwatch, progress: Progress) ->
         seams = steps.cut(args, loaded, flattened.mesh, used, part_of(progress, 0.05, 0.6))
     with watch.phase("flatten"):
         skin, distortions = steps.to_skin(loaded, flattened, seams, used=used, max_distortion=args.max_distortion, seed=args.seed)
-    return skin, distortions, used, (*loaded.notes, *flattened.remarks)
+    remarks = (*flattened.remarks, *many_pieces(skin, wrapped=args.wrap is not None))
+    steps.say(remarks[len(flattened.remarks) :])
+    return skin, distortions, used, (*loaded.notes, *remarks)
 
 
 def _document(args: argparse.Namespace, watch: Stopwatch, progress: Progress) -> Started:

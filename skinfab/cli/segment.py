@@ -6,6 +6,7 @@ import argparse
 import json
 
 from skinfab.cli import steps
+from skinfab.cli.advice import many_pieces
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -39,6 +40,7 @@ def run(args: argparse.Namespace) -> int:
         seams = steps.cut(args, loaded, flattened.mesh, used, progress)
     skin, distortions = steps.to_skin(loaded, flattened, seams, used=used, max_distortion=args.max_distortion, seed=args.seed)
     save_skin(skin, args.output)
+    steps.say(many_pieces(skin, wrapped=args.wrap is not None))
     if args.json:
         pieces = [
             {"id": p.id, "n_faces": len(p.F), "size_mm": p.size, "distortion": {"mean": d.mean, "p95": d.p95, "p99": d.p99, "max": d.max}}
