@@ -158,6 +158,40 @@ def mould_plan(
     )
 
 
+def mould_fits(outline: NDArray[np.float64], *, mould: Mould, bed: tuple[float, float]) -> bool:
+    """Whether the mould of a piece lies on the bed, wherever it gets lips: known from its outline, before it has seams or sensors.
+
+    Parameters
+    ----------
+    outline : (b, 2) float, mm
+        Of the piece, as `skinfab.flatten.orient.orient` lays it.
+    mould : Mould
+    bed : (float, float), mm
+        Its width and depth.
+
+    Examples
+    --------
+    A square of 50 mm with a lip of 4, a wall of 1.6 and marks of 6 mm all round needs 73.2 mm, and half a mm is allowed for.
+
+    >>> from skinfab.material import load_material
+    >>> square = np.array([[0.0, 0], [50, 0], [50, 50], [0, 50]])
+    >>> mould = load_material().mould
+    >>> mould_fits(square, mould=mould, bed=(73.7, 73.7)), mould_fits(square, mould=mould, bed=(73.7, 73.1))
+    (True, False)
+    """
+    size = np.ptp(outline, axis=0)
+    # Where a lip ends, its wall goes round a square corner, which reaches a little past the wall along the next side.
+    reach = math.hypot(mould.lip + mould.wall, mould.wall) - mould.wall if mould.lip else 0.0
+    # Corners of lips and walls reach up to twice as far as their sides.
+    if (size + 2 * mould.mark + 4 * (mould.wall + reach) <= bed).all():
+        return True
+    if (size + 2 * (mould.mark + mould.wall) > bed).any():
+        return False
+    lip = shapely.LinearRing(outline).buffer(reach, join_style="mitre", mitre_limit=2) if reach else Polygon(outline)
+    xmin, ymin, xmax, ymax = _outer(lip, mould).bounds
+    return xmax - xmin + 2 * mould.mark <= bed[0] and ymax - ymin + 2 * mould.mark <= bed[1]
+
+
 def cavity_region(piece: Piece) -> MultiPolygon:
     """The flat piece as a valid region, darts that close to nothing healed.
 

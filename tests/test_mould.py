@@ -11,12 +11,14 @@ import numpy as np
 import pytest
 import shapely
 import trimesh
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from skinfab.errors import InputError, RefusedError
 from skinfab.material import load_material
 from skinfab.mould import FREEBOARD_MM, CastingMould, casting_mould, is_watertight, write_mould
-from skinfab.mould_plan import cavity_region
+from skinfab.mould_plan import cavity_region, mould_fits, mould_plan
 from skinfab.pieces import Piece
 from skinfab.wire_exits import WirePad
 
@@ -352,3 +354,35 @@ def test_watertight_check_can_fail() -> None:
     assert not is_watertight(box[1:])
     assert not is_watertight(np.vstack([box[1:], box[:1, ::-1]]))
     assert not is_watertight(np.zeros((0, 3), np.int64))
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.integers(0, 10**6))
+def test_what_the_bed_must_have_is_known_from_the_outline(seed: int) -> None:
+    """No mould is larger than foretold, wherever its lips are."""
+    rng = np.random.default_rng(seed)
+    angle = np.sort(rng.uniform(0, 2 * np.pi, 5))
+    if (np.diff(angle, append=angle[0] + 2 * np.pi) > 3).any():
+        return
+    uv = rng.uniform(20, 60, 5)[:, None] * np.c_[np.cos(angle), np.sin(angle)]
+    uv = np.vstack([uv, [[0, 0]]]) - uv.min(axis=0)
+    piece = Piece("P1", np.arange(5), np.arange(6), np.array([[5, k, (k + 1) % 5] for k in range(5)]), uv)
+    mould = replace(load_material().mould, draft_deg=0.0)
+    ring = np.vstack([piece.outline, piece.outline[:2]])
+    for lips in ([ring[:5]], [ring[k : k + 2] for k in rng.permutation(5)[:3]]):
+        x0, y0, x1, y1 = mould_plan(piece, mould=mould, depth=2.5, lips=lips).plate.bounds
+        assert not mould_fits(piece.outline, mould=mould, bed=(x1 - x0 - 0.01, 1e3))
+        assert not mould_fits(piece.outline, mould=mould, bed=(1e3, y1 - y0 - 0.01))
+
+
+def test_a_lip_round_a_sharp_corner_reaches_far() -> None:
+    # At 60 degrees both the lip and the wall round it reach twice their width past the corner.
+    uv = np.array([[0.0, 0], [40, 0], [20, 20 * np.sqrt(3)]])
+    piece = Piece("P1", np.arange(1), np.arange(3), np.array([[0, 1, 2]]), uv)
+    mould = replace(load_material().mould, draft_deg=0.0)
+    tip = [np.vstack([piece.outline[1:], piece.outline[:1]])]
+    _, y0, _, y1 = mould_plan(piece, mould=mould, depth=2.5, lips=tip).plate.bounds
+    assert y1 - uv[:, 1].max() == pytest.approx(mould.mark + 2 * (mould.lip + mould.wall), abs=1e-3)
+    # The side below could get a lip too, as far as is known before there are seams.
+    need = y1 - y0 + mould.lip
+    assert mould_fits(uv, mould=mould, bed=(200, need + 0.7)) and not mould_fits(uv, mould=mould, bed=(200, need - 0.01))

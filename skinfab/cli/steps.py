@@ -7,6 +7,7 @@ import math
 import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -192,12 +193,15 @@ def profiles(printer: str | None = None, material: str | None = None) -> Profile
 
 def limits(max_distortion: float, used: Profiles) -> Limits:
     """Pieces within the distortion bound whose moulds fit the bed."""
+    from skinfab.mould_plan import mould_fits
     from skinfab.seams.judge import Limits
 
     mould = used.material.mould
-    rim = 2 * (mould.wall + mould.mark + mould.lip)
+    rim = 2 * (mould.wall + mould.mark)
     width, depth = used.printer.bed_size
-    return Limits(mean=max_distortion, size=(width - rim, depth - rim))
+    # A piece lies with its long side along x, so a bed that is deeper than wide has no use for the rest.
+    size = (width - rim, min(width, depth) - rim)
+    return Limits(mean=max_distortion, size=size, fits=partial(mould_fits, mould=mould, bed=(width, depth)))
 
 
 @dataclass(frozen=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -29,10 +30,13 @@ class Limits:
         Its mean d at most.
     size : (float, float), mm
         Width and height of the bed, less the mould's walls; either way round.
+    fits : callable, optional
+        Whether a piece with this outline, (b, 2) mm in the piece frame, fits the bed with what its mould has about it.
     """
 
     mean: float = 4.05
     size: tuple[float, float] = (np.inf, np.inf)
+    fits: Callable[[NDArray[np.float64]], bool] | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,11 +86,14 @@ def verdict_of(mesh: Mesh, piece: OpenPiece, uv: NDArray[np.float64], limits: Li
     distortion = measure(mesh.V[piece.vertices], piece.F, uv, topology=piece.topology)
     area = float(mesh.face_areas[piece.faces].sum())
     (w, h), (W, H) = np.ptp(uv, axis=0), sorted(limits.size, reverse=True)
+    outline = uv[piece.topology.boundary_loops[0]]
     return Verdict(
         UV=uv,
         distortion=distortion,
         too_distorted=not distortion.mean <= limits.mean or distortion.flipped > 0,
         overlaps=not distortion.overlap_mm2 <= OVERLAP_FRACTION * area,
         # What is far from flat yet has no size yet, but more area than the bed has will not fit in any case.
-        too_large=bool(area > W * H or (distortion.mean <= limits.mean and (w > W or h > H))),
+        too_large=bool(
+            area > W * H or (distortion.mean <= limits.mean and (w > W or h > H or (limits.fits is not None and not limits.fits(outline))))
+        ),
     )

@@ -157,4 +157,6 @@ def _fault(verdict: Verdict, limits: Limits) -> str:
     if verdict.overlaps:
         return f"overlaps itself by {verdict.distortion.overlap_mm2:.3g} mm^2 when laid flat"
     w, h = verdict.UV.max(axis=0)
-    return f"is {w:.0f} x {h:.0f} mm flat and does not fit the bed ({limits.size[0]:.0f} x {limits.size[1]:.0f} mm)"
+    (W, H) = sorted(limits.size, reverse=True)
+    lips = "" if w > W or h > H else " with the lips of its mould"
+    return f"is {w:.0f} x {h:.0f} mm flat and does not fit the bed ({limits.size[0]:.0f} x {limits.size[1]:.0f} mm){lips}"

@@ -278,6 +278,20 @@ def test_a_printer_that_is_too_small_gets_smaller_pieces(tmp_path: Path) -> None
         assert np.max(entry["bbox_mm"]) < 150
 
 
+@pytest.mark.parametrize("bed", [(120.2, 120.2), (90, 300)], ids=["the lips' corners", "deeper than wide"])
+def test_a_mould_that_would_not_lie_on_the_bed_is_known_while_cutting(bed: tuple[float, float], tmp_path: Path) -> None:
+    # In one piece the skin is 96.3 x 66.4 mm and its mould 120.6 x 87.7 mm, long side along x.
+    text = (ROOT / "gcode/profiles/ender5plus-vipro.toml").read_text()
+    text = re.sub(r"(?ms)^\[park\].*?(?=^\[|\Z)", "", text.replace("size = [350, 350]", f"size = [{bed[0]}, {bed[1]}]"))
+    (tmp_path / "small.toml").write_text(text)
+    words = ["make", str(ROOT / "meshes/human_finger.obj"), "-o", str(tmp_path / "out"), "--printer", str(tmp_path / "small.toml")]
+    assert main(words) == 0
+    report = results.read_report(tmp_path / "out")
+    assert len(report["pieces"]) > 1
+    for mould in report["moulds"]:
+        assert mould["size_mm"][0] <= bed[0] and mould["size_mm"][1] <= bed[1]
+
+
 @pytest.mark.parametrize(
     ("arguments", "status", "says"),
     [
