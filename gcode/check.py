@@ -137,7 +137,8 @@ def judge(
 
 def _faults_of(move: Move, printer: Printer) -> Iterator[tuple[str, str]]:
     yield from _bounds(move, printer)
-    yield from _arc(move, printer)
+    if isinstance(move.shape, Curve):
+        yield from _arc(move.shape, printer)
     yield from _ink(move, printer)
     yield from _speed(move, printer)
 
@@ -168,10 +169,7 @@ def _lies_within(low: Corner, high: Corner, z: float | None, bed: Bed) -> bool:
     return x <= low[0] and high[0] <= x + width and y <= low[1] and high[1] <= y + depth
 
 
-def _arc(move: Move, printer: Printer) -> Iterator[tuple[str, str]]:
-    shape = move.shape
-    if not isinstance(shape, Curve):
-        return
+def _arc(shape: Curve, printer: Printer) -> Iterator[tuple[str, str]]:
     if not printer.arcs:
         yield "this printer draws no arcs", "emit with --arcs lines"
     if shape.radius_error > ARC_RADIUS_MM:

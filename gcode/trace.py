@@ -8,8 +8,7 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import dataclass, field, replace
 from typing import TypeAlias
 
 from gcode.geometry import Curve, Point, Shape, Straight
@@ -43,7 +42,7 @@ class Finding:
         return f"{where}{f', pattern {self.pattern}' if self.pattern else ''}: {self.what}; {self.remedy}"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Move:
     """One motion command.
 
@@ -60,6 +59,8 @@ class Move:
         None before the first F.
     pattern : str
         After the last comment ``pattern NAME``.
+    shape : Straight or Curve, or None
+        The motion in the plane; None where there is none or its start is unknown. It follows from the others.
     """
 
     line: int
@@ -70,10 +71,13 @@ class Move:
     e: float
     speed: float | None
     pattern: str
+    shape: Shape | None = field(init=False, compare=False, repr=False)
 
-    @cached_property
-    def shape(self) -> Shape | None:
-        """The motion in the plane; None where there is none or its start is unknown."""
+    def __post_init__(self) -> None:
+        # Asked for by every rule, so it is made once; slots keep a hundred thousand moves small.
+        object.__setattr__(self, "shape", self._shape())
+
+    def _shape(self) -> Shape | None:
         if self.start[0] is None or self.start[1] is None or self.end[0] is None or self.end[1] is None:
             return None
         start, end = (self.start[0], self.start[1]), (self.end[0], self.end[1])
