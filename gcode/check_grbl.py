@@ -35,7 +35,11 @@ def grbl_findings(judged: Trace) -> Iterator[Finding]:
     >>> print(*grbl_findings(trace("M83")))
     line 1: GRBL does not know M83 and halts there; take it out
     """
+    inked = [m.line for m in judged.moves if m.e > 0 and m.is_planar]
     for command in judged.commands:
+        if command.code in ("M0", "M1") and inked and inked[0] < command.line < inked[-1]:
+            what = f"{command.code} waits for a click in the midst of the ink, and the silicone sets meanwhile"
+            yield Finding(command.line, what, "take it out")
         if command.code and (fault := _fault(command)):
             yield Finding(command.line, *fault)
 
@@ -55,6 +59,8 @@ def _fault(command: Command) -> tuple[str, str] | None:
         return f"{code} goes to a place stored in the machine, which no rule can judge", "write the place as G1 X Y Z"
     if code in OFFSETS:
         return f"{code} moves the origin that was set by hand", "send it before the start, not in the file"
+    if code == "G53":
+        return "G53 moves in the machine's own places, which no rule can judge", "write the place from the origin that was set"
     if code == "G93":
         return "G93 reads F as one over a time", "use G94 and F in mm/min"
     return None
