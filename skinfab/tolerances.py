@@ -72,9 +72,10 @@ LEAST_BEAD_MM = 0.05
 #: rounding could turn its end behind its start and so make a full circle of it.
 SHORT_ARC_MM = 0.01
 
-#: Rounding places to 0.0001 mm changes the flow along a bead by less than this share where it is longer than
-#: 0.01 mm; along a shorter one, or where rounding left out the shape before it, the head is slowed down to keep it.
-GRID_FLOW_FRACTION = 0.02
+#: Rounding places to 0.0001 mm changes the flow along a bead by less than this share where it is longer than 0.2 mm;
+#: along a shorter one, or where rounding left out the shape before it, the head is slowed down to keep it. Under the
+#: spare of 8e-4 that a check leaves a flow at its limit.
+GRID_FLOW_FRACTION = 5e-4
 
 #: Rates of a pump that is a spindle (GRBL's S) are the same where they differ by less than this share: one step of an
 #: 8-bit PWM, which is what most boards make of S. The head is slowed down by as much, so the ink per mm is not touched.

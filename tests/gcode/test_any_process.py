@@ -20,7 +20,7 @@ from skinfab.patterns.strain_lines import StrainLines
 from skinfab.pieces import Piece
 from skinfab.placement.sensor import Sensor
 
-LENGTH = st.one_of(st.just(0.0), st.floats(0.5, 8.0))
+LENGTH = st.one_of(st.just(0.0), st.floats(1e-3, 0.1), st.floats(0.5, 8.0))
 
 
 @st.composite
