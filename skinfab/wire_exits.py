@@ -27,6 +27,10 @@ _OVER_OTHERS = 5 * CROSSING
 #: A way that lips may close is taken where it saves so many mm; if they do close it, the wire is led anew.
 _NARROW_MM = 40.0
 
+#: A wire is laid by hand, to a mm: a way that passes ink nearer than that is taken where it saves so many mm.
+_HAND_MM = 1.0
+_BESIDE_INK_MM = 20.0
+
 
 @dataclass(frozen=True, eq=False)
 class WirePad:
@@ -222,8 +226,9 @@ def _conductors(pad: WirePad, pads: Sequence[WirePad]) -> _Conductors:
 def _faults(pad: WirePad, ways: Ways, near: _Conductors) -> NDArray[np.float64]:
     """What is wrong with each way whatever the other wires do, see `skinfab.wire_choice.choose_ways`."""
     wires = shapely.linestrings(ways.wire)
-    over_others, over_own = (shapely.distance(wires, lines) < pad.bead / 2 for lines in (near.others, near.own))
-    return _OVER_OTHERS * over_others + CROSSING * over_own + _NARROW_MM * ways.narrow
+    to_others, to_own = (shapely.distance(wires, lines) - pad.bead / 2 for lines in (near.others, near.own))
+    soft = _NARROW_MM * ways.narrow + _BESIDE_INK_MM * (np.fmin(to_others, to_own) < _HAND_MM)
+    return _OVER_OTHERS * (to_others < 0) + CROSSING * (to_own < 0) + soft
 
 
 def _shared_slot(pad: WirePad, near: _Conductors, slots: Sequence[WireSlot | None], reach: BaseGeometry) -> WireSlot | None:

@@ -83,6 +83,14 @@ def test_own_conductor_is_gone_round() -> None:
     assert not shapely.LineString([[10, 15], slot.at]).intersects(shapely.LineString([[5, 0], [5, 30]]))
 
 
+def test_a_wire_does_not_graze_ink() -> None:
+    # Straight to the left it would pass the stroke by 0.1 mm; a few degrees aside there is room for a hand.
+    stroke = [[4, 15.5], [4, 20]]
+    (slot,), notes = exits([pad("C1", 10, 15, ink=stroke)], box(0, 0, 40, 30))
+    assert notes == () and slot.at[0] == pytest.approx(0)
+    assert shapely.LineString([[10, 15], slot.at]).distance(shapely.LineString(stroke)) >= 0.4 + 1.0
+
+
 def test_own_conductor_all_round_is_said() -> None:
     fence = [[10, 10], [20, 10], [20, 20], [10, 20], [10, 10]]
     pads = [pad("C1", 15, 14, ink=fence)]
