@@ -158,7 +158,8 @@ def _wire(job: PrintJob, recipe: Recipe) -> str:
         f"{job.piece}: once cured and still in the mould, pierce a wire stripped at its end into each pad, lay it straight to its slot and "
         f"out through it: {slots} (wire by slot, x and y in mm from the piece's origin in flat.svg). "
         f"Seal each pad with a drop of {recipe.bond}. Measure each sensor between its two wires: wiring.csv of skinfab make has "
-        "the interval for nine prints in ten, and the board and input that each wire goes to."
+        "the interval for nine prints in ten, and the multiplexer board and input that each signal wire goes to; return wires all go to "
+        "the line that the bridges share."
     )
 
 

@@ -66,6 +66,13 @@ def test_the_numbers_of_one_piece() -> None:
     assert "G92 Z-1.60" in height
 
 
+def test_where_each_wire_goes() -> None:
+    """Signal wires to an input each, return wires together: the table gives both wires of a sensor the same input."""
+    (step,) = (s for s in work_steps(WEIGHED, MATERIAL, jobs=JOBS) if "pierce" in s)
+    assert "pierce a wire stripped at its end into each pad, lay it straight to its slot and out through it: " in step
+    assert "input that each signal wire goes to; return wires all go to the line that the bridges share" in step
+
+
 def test_z_is_set_once_for_each_print() -> None:
     steps = work_steps(WEIGHED, MATERIAL, jobs=JOBS)
     assert sum("G92" in step for step in steps) == len(JOBS)
