@@ -22,7 +22,7 @@ ALLOWED = {
 FLOORS = (
     ("errors", "tolerances", "__init__"),
     ("files", "decimals", "linalg", "paths", "material", "progress", "staging", "archive"),
-    ("mesh", "patterns", "electrical", "strip_fit", "strip_table"),
+    ("mesh", "patterns", "electrical", "readout", "strip_fit", "strip_table"),
     ("pieces", "flatten"),
     ("seams", "placement"),
     ("skin",),

@@ -30,6 +30,7 @@ COMMANDS = {
     "mould": "casting moulds for the flat pieces",
     "gcode": "G-code for the sensors, or check a G-code file",
     "strips": "calibration strips for the ink: print them, then fit what was measured",
+    "calibrate": "fit a strain sensor to joint angles",
     "bench": "measure the project beside its peers: time against distortion",
 }
 
@@ -68,7 +69,8 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def build_parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
     """The parser for these arguments: the sub-command they name is complete, the others are their one line of help."""
-    parser = _Parser(prog="skinfab", description="From a 3D model to a printed, calibrated soft sensor skin.")
+    description = "From a 3D model to a printed, calibrated soft sensor skin."
+    parser = _Parser(prog="skinfab", description=description, formatter_class=_CommandsInOneColumn)
     parser.add_argument("--version", action="version", version=f"skinfab {__version__}")
     subparsers = parser.add_subparsers(metavar="COMMAND", required=True, title="commands")
     wanted = next((a for a in arguments if not a.startswith("-")), None)
@@ -86,6 +88,15 @@ class _Parser(argparse.ArgumentParser):
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**{"allow_abbrev": False, **options})
+
+
+class _CommandsInOneColumn(argparse.HelpFormatter):
+    """argparse forgets the indent of sub-commands where it reckons the column of their help, and breaks the line of a long name."""
+
+    def add_argument(self, action: argparse.Action) -> None:
+        super().add_argument(action)
+        names = list(action.choices or ()) if isinstance(action, argparse._SubParsersAction) else []
+        self._action_max_length = max([self._action_max_length, *(len(name) + 4 for name in names)])
 
 
 def _dispatch(arguments: list[str]) -> int:

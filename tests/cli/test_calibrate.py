@@ -1,0 +1,88 @@
+"""`skinfab calibrate`: the contract's JSON, the files beside it, and the ways in which it is used wrongly."""
+
+import csv
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from calibration.document import load_calibration
+from calibration.models import MODELS
+from skinfab.cli import calibrate
+from skinfab.cli.main import main
+
+FILES = ["calibration.json", "calibration.png", "result.json", "samples.csv"]
+
+
+@pytest.fixture
+def log(tmp_path: Path) -> Callable[..., str]:
+    def write(*, name: str = "log.csv", scale: float = 1.0, remark: str = "") -> str:
+        time = np.arange(3200) / 100
+        angle = 45 - 40 * np.cos(2 * np.pi * time / 8)
+        reading = 2.5 * (1 + scale * (2e-3 * angle + 2e-5 * angle**2)) + 0.002 * np.random.default_rng(0).standard_normal(3200)
+        rows = "\n".join(f"{t},{a},{u}" for t, a, u in zip(time.tolist(), angle.tolist(), reading.tolist(), strict=True))
+        (tmp_path / name).write_text(f"{remark}time,PIP,U\n{rows}\n")
+        return str(tmp_path / name)
+
+    return write
+
+
+def test_the_names_are_the_models() -> None:
+    assert calibrate.NAMES == ("auto", *MODELS)
+
+
+def test_json_and_files(log: Callable[..., str], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "out"
+    words = ["calibrate", log(), "--signal", "U", "--angle", "PIP", "-o", str(out), "--json", "--new-task", log(name="b.csv", scale=1.1)]
+    assert main(words) == 0
+    printed = capsys.readouterr()
+    result = json.loads(printed.out)
+    assert sorted(path.name for path in out.iterdir()) == FILES and json.loads((out / "result.json").read_text()) == result
+    assert (result["model"], result["degree"], result["range_deg"]) == ("poly", 2, [10.0, 80.0])
+    assert set(result["sensitivity_per_deg"]) == {"min", "mean", "max"} and set(result["models"]) == set(MODELS)
+    assert all(each["us_per_sample"] > 0 and each["held_out_rms_deg"] < 1 for each in result["models"].values())
+    (task,) = result["new_tasks"]
+    assert task["file"] == "b.csv" and task["models"]["poly"]["rms_deg"] > 2  # a sensor that reads a tenth more
+    loaded = load_calibration(out / "calibration.json")
+    with (out / "samples.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    time, change = (np.array([float(row[key]) for row in rows]) for key in ("time_s", "relative_change"))
+    angles, _ = loaded.angles(time, loaded.u0 * (1 + change))
+    np.testing.assert_allclose(angles, [float(row["estimate_deg"]) for row in rows], atol=1e-4)
+    assert sum(int(row["fitted"]) for row in rows) == result["n"]
+
+
+def test_words_for_people(log: Callable[..., str], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    words = ["calibrate", log(remark="# simulated: true\n"), "--signal", "U", "--angle", "PIP", "-o", str(tmp_path / "o")]
+    assert main([*words, "--model", "lag", "--degree", "3"]) == 0
+    text = capsys.readouterr().out
+    assert "curve of degree 3" in text and "* lag" in text and "degrees rms on the half that was held out" in text
+    assert (tmp_path / "o/samples.csv").read_text().startswith("# simulated: true\n")
+    assert json.loads((tmp_path / "o/result.json").read_text())["log"]["simulated"] is True
+
+
+@pytest.mark.parametrize(
+    ("words", "status", "says"),
+    [
+        (["--signal", "V"], 1, "no column 'V'"),
+        (["--range", "80", "10"], 2, "the first must be below the second"),
+        (["--range", "100", "120"], 1, "give --range 5 85"),
+        (["--degree", "0"], 2, "neither auto nor a degree"),
+        (["--model", "magic"], 2, "invalid choice"),
+        (["--new-task", "nowhere.csv"], 1, "nowhere.csv: No such file"),
+    ],
+)
+def test_wrong_usage(
+    words: list[str], status: int, says: str, log: Callable[..., str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "out"
+    assert main(["calibrate", log(), "--signal", "U", "--angle", "PIP", "-o", str(out), *words]) == status
+    assert says in capsys.readouterr().err and not out.exists()
+
+
+def test_a_place_that_is_none(log: Callable[..., str], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "file").write_text("")
+    assert main(["calibrate", log(), "--signal", "U", "--angle", "PIP", "-o", str(tmp_path / "file")]) == 1
+    assert "file" in capsys.readouterr().err
