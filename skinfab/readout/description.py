@@ -39,7 +39,12 @@ def stream_to_json(stream: Stream) -> str:
 
 
 def stream_of_json(text: str | bytes) -> Stream:
-    """What `stream_to_json` wrote.
+    """What `stream_to_json` wrote, or a device's own words: there a key may be missing whose value says nothing.
+
+    Examples
+    --------
+    >>> stream_of_json('{"schema": 1, "name": "skin", "channels": [{"name": "S1", "unit": "V"}]}').names
+    ('S1',)
 
     Raises
     ------
@@ -58,23 +63,23 @@ def stream_of_json(text: str | bytes) -> Stream:
         channels = tuple(
             Channel(
                 _text(c["name"]),
-                _text(c["unit"]),
-                _text(c["kind"]),
-                -math.inf if c["low"] is None else _number(c["low"]),
-                math.inf if c["high"] is None else _number(c["high"]),
-                _text(c["sensor"]),
-                _whole(c["board"]),
-                _whole(c["input"]),
+                _text(c.get("unit", "")),
+                _text(c.get("kind", "")),
+                -math.inf if c.get("low") is None else _number(c["low"]),
+                math.inf if c.get("high") is None else _number(c["high"]),
+                _text(c.get("sensor", "")),
+                _whole(c.get("board", 0)),
+                _whole(c.get("input", 0)),
             )
             for c in content["channels"]
         )
-        simulated = content["simulated"]
+        simulated = content.get("simulated", False)
         if not isinstance(simulated, bool):
             raise TypeError(f"{simulated!r} is neither true nor false")
-        return Stream(_text(content["name"]), channels, _number(content["rate_hz"]), simulated)
+        return Stream(_text(content["name"]), channels, _number(content.get("rate_hz", 0.0)), simulated)
     except KeyError as fault:
         raise InputError(f"the description of the stream lacks {fault.args[0]!r}; the file is damaged") from fault
-    except (TypeError, OverflowError) as fault:
+    except (TypeError, AttributeError, OverflowError) as fault:
         raise InputError(f"the description of the stream has a part of the wrong kind ({fault}); the file is damaged") from fault
 
 
