@@ -50,7 +50,14 @@ class PrintJob:
     time_s: float | None = None
 
 
-def work_steps(recipe: Recipe, material: Material, *, jobs: Sequence[PrintJob] = (), home: str = "xy") -> list[str]:
+def work_steps(
+    recipe: Recipe,
+    material: Material,
+    *,
+    jobs: Sequence[PrintJob] = (),
+    home: str = "xy",
+    bed_corner: tuple[float, float] | None = None,
+) -> list[str]:
     """What to do, a step each, in order.
 
     All pieces are printed at one place, the bed's centre, and silicone and ink must be laid before the silicone
@@ -65,6 +72,8 @@ def work_steps(recipe: Recipe, material: Material, *, jobs: Sequence[PrintJob] =
         The pieces with sensors, in the order to print them.
     home : "xyz", "xy" or "none"
         What the programs home.
+    bed_corner : (2,) float, mm, optional
+        Where the bed begins, for a machine (GRBL) that is homed by hand and told its places by work offsets.
 
     Raises
     ------
@@ -94,8 +103,9 @@ def work_steps(recipe: Recipe, material: Material, *, jobs: Sequence[PrintJob] =
             "place, the middle of the bed. Mix the silicone for each piece anew, by the table: it has to be poured and printed into "
             "within its working time, which its label tells."
         )
-    for job in jobs:
-        steps += [*_register(job, material, home), *_fill(job.piece, recipe), *_print(job, recipe, material)]
+    for k, job in enumerate(jobs):
+        homing = _HOMING[home] if bed_corner is None else _by_hand(bed_corner, first=k == 0)
+        steps += [*_register(job, material, home, homing, "G92" if bed_corner is None else "G10 L20 P1"), *_fill(job.piece, recipe), *_print(job, recipe, material)]
     if bare:
         layers = ", then ".join(f"the {b.layer} layer ({b.depth:g} mm)" for b in recipe.batches)
         no_sensors = "has no sensors and is" if len(bare) == 1 else "have no sensors and are"
@@ -107,7 +117,18 @@ def work_steps(recipe: Recipe, material: Material, *, jobs: Sequence[PrintJob] =
     return [*steps, *(_wire(job, recipe) for job in jobs if job.slots), *_finish(recipe, material)]
 
 
-def _register(job: PrintJob, material: Material, home: str) -> list[str]:
+def _by_hand(corner: tuple[float, float], *, first: bool) -> str:
+    """GRBL's way: homed while nothing can be hit, and the bed's corner told; both outlast a reset."""
+    if not first:
+        return "do not home again, for $H moves Z too; the places set for the first piece still hold"
+    x, y = corner
+    return (
+        f"home with $H while the bed is empty, for it moves Z too. Jog the nozzle over the bed's front left corner and send G10 L20 P1 X{x:g} "
+        f"Y{y:g}: from then on the controller shows the places named here (a reset forgets G92, not G10)"
+    )
+
+
+def _register(job: PrintJob, material: Material, home: str, homing: str, zero: str) -> list[str]:
     """Bring the empty mould and the printer together."""
     if job.marks is None:
         return [f"{job.piece}: lay the empty mould on the level bed, home, register it and set Z as the report of skinfab make says."]
@@ -116,11 +137,11 @@ def _register(job: PrintJob, material: Material, home: str) -> list[str]:
     )
     # The program counts its heights from the floor of the cavity, which lies above the glass.
     z = -material.mould.floor
-    set_z = f"set this height as Z {z:.2f} (G92 Z{z:.2f})"
+    set_z = f"set this height as Z {z:.2f} ({zero} Z{z:.2f})"
     if home == "xyz":
         set_z = f"see that the display shows Z {z:.2f} there; if not, shift the home position (M206 Z{z:.2f}) and home again before pouring"
     return [
-        f"{job.piece}: {_HOMING[home]}.",
+        f"{job.piece}: {homing}.",
         f"{job.piece}: lay the empty mould on the level bed so that its {corners}. Jog the nozzle to the lower left mark and move "
         "the mould under it; jog to the lower right mark and turn the mould until it "
         "agrees; the upper left mark is the check. Then tape it down. (The sheet of flat.pdf, printed "

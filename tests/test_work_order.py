@@ -82,6 +82,14 @@ def test_z_is_set_once_for_each_print() -> None:
             assert at[0] < at[1]
 
 
+def test_grbl_is_homed_once_and_told_its_places_by_offsets() -> None:
+    steps = work_steps(WEIGHED, MATERIAL, jobs=JOBS, home="none", bed_corner=(-5.0, 0.0))
+    text = " ".join(steps)
+    assert text.count("home with $H while the bed is empty") == 1 and "G10 L20 P1 X-5 Y0" in text
+    assert text.count("do not home again") == len(JOBS) - 1 and "G92 Z" not in text
+    assert text.count("G10 L20 P1 Z-") == len(JOBS)
+
+
 @pytest.mark.parametrize(("home", "says"), [("xyz", "bed empty"), ("xy", "X and Y only"), ("none", "does not home")])
 def test_homing(home: str, says: str) -> None:
     assert says in work_steps(WEIGHED, MATERIAL, jobs=JOBS, home=home)[2]

@@ -237,7 +237,9 @@ def _recipe(moulds: list[CastingMould], printed: Sequence[PieceGcode], used: ste
         for w in printed
         for mould in (by_piece[w.piece],)
     ]
-    return weighed.as_dict() | {"steps": work_steps(weighed, used.material, jobs=jobs, home=used.printer.home)}
+    printer = used.printer
+    corner = printer.bed.origin if printer.spindle else None  # GRBL: homed and told its places by hand
+    return weighed.as_dict() | {"steps": work_steps(weighed, used.material, jobs=jobs, home=printer.home, bed_corner=corner)}
 
 
 def _write_pictures(
