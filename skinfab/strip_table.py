@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import math
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skinfab.errors import InputError
+from skinfab.spreadsheet import read_csv_lines
 
 #: A table larger than this is none of ours.
 TABLE_MAX_BYTES = 1_000_000
@@ -52,9 +54,9 @@ def read_strips(path: str | Path) -> Strips:
         The file cannot be read, a column is missing, a value is not a positive number, or nothing was measured yet.
     """
     path = Path(path)
-    lines = _lines(path)
+    lines, delimiter = read_csv_lines(path, max_bytes=TABLE_MAX_BYTES, wanted="the strips.csv that skinfab strips made, filled in")
     try:
-        reader = csv.reader(lines, delimiter=_delimiter(lines), strict=True)
+        reader = csv.reader(lines, delimiter=delimiter, strict=True)
         rows = [(reader.line_num, [cell.strip() for cell in row]) for row in reader]
     except csv.Error as fault:
         raise InputError(f"{path} is not a CSV file: {fault}; save the table as CSV, UTF-8") from fault
@@ -64,6 +66,7 @@ def read_strips(path: str | Path) -> Strips:
         if head.count(name) != 1:
             has = "no column" if name not in head else "more than one column"
             raise InputError(f"{path}: there is {has} {name!r}; the first line names the columns, length_mm and r_kohm among them")
+    _require_plain_thousands(rows[1:], head, delimiter, path)
     measured: list[tuple[float, float]] = []
     names, unmeasured = [], []
     for number, row in rows[1:]:
@@ -84,21 +87,20 @@ def read_strips(path: str | Path) -> Strips:
     return Strips(length, r, tuple(unmeasured), tuple(names))
 
 
-def _lines(path: Path) -> list[str]:
-    try:
-        if path.stat().st_size > TABLE_MAX_BYTES:
-            raise InputError(f"{path} is too large for a table of strips; give the strips.csv that skinfab strips made")
-        return path.read_text(encoding="utf-8-sig").splitlines()
-    except OSError as fault:
-        raise InputError(f"{path}: {fault.strerror or fault}; give the strips.csv that skinfab strips made, filled in") from fault
-    except UnicodeDecodeError as fault:
-        raise InputError(f"{path} is not a CSV file: {fault}; save the table as CSV, UTF-8") from fault
-
-
-def _delimiter(lines: Sequence[str]) -> str:
-    """What parts the headings, in whose names none of these occurs."""
-    head = next((line for line in lines if line.strip()), "")
-    return max(",;\t", key=head.count)
+def _require_plain_thousands(rows: Sequence[tuple[int, list[str]]], head: Sequence[str], delimiter: str, path: Path) -> None:
+    """Where commas are decimal, 1.382 means 1382: refused, as one cannot know."""
+    if delimiter == ",":
+        return
+    numbers = [(number, cell) for number, row in rows for name, cell in zip(head, row, strict=False) if name in _COLUMNS]
+    pointed = [(number, cell) for number, cell in numbers if "." in cell]
+    thousands = [(number, cell) for number, cell in pointed if re.fullmatch(r"[1-9]\d{0,2}\.\d{3}", cell)]
+    if thousands and (len(thousands) == len(pointed) or any("," in cell for _, cell in numbers)):
+        number, cell = thousands[0]
+        whole = cell.split(".")[0]
+        raise InputError(
+            f"{path}, line {number}: is {cell!r} {cell.replace('.', '')} with a mark between thousands, or a little over {whole}? "
+            "Write numbers without marks between thousands"
+        )
 
 
 def _cells(head: Sequence[str], row: Sequence[str], where: str) -> dict[str, str]:

@@ -105,7 +105,8 @@ def work_steps(
         )
     for k, job in enumerate(jobs):
         homing = _HOMING[home] if bed_corner is None else _by_hand(bed_corner, first=k == 0)
-        steps += [*_register(job, material, home, homing, "G92" if bed_corner is None else "G10 L20 P1"), *_fill(job.piece, recipe), *_print(job, recipe, material)]
+        zero = "G92" if bed_corner is None else "G10 L20 P1"
+        steps += [*_register(job, material, home, homing, zero), *_fill(job.piece, recipe), *_print(job, recipe, material)]
     if bare:
         layers = ", then ".join(f"the {b.layer} layer ({b.depth:g} mm)" for b in recipe.batches)
         no_sensors = "has no sensors and is" if len(bare) == 1 else "have no sensors and are"
@@ -123,8 +124,8 @@ def _by_hand(corner: tuple[float, float], *, first: bool) -> str:
         return "do not home again, for $H moves Z too; the places set for the first piece still hold"
     x, y = corner
     return (
-        f"home with $H while the bed is empty, for it moves Z too. Jog the nozzle over the bed's front left corner and send G10 L20 P1 X{x:g} "
-        f"Y{y:g}: from then on the controller shows the places named here (a reset forgets G92, not G10)"
+        "home with $H while the bed is empty, for it moves Z too. Jog the nozzle over the bed's front left corner and send "
+        f"G10 L20 P1 X{x:g} Y{y:g}: from then on the controller shows the places named here (a reset forgets G92, not G10)"
     )
 
 

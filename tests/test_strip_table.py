@@ -52,12 +52,25 @@ def test_tables_from_spreadsheets(text: str, tmp_path: Path) -> None:
         ("length_mm;r_kohm\n40;1.234,5\n", r"line 2, column r_kohm: r_kohm is '1\.234,5'"),
         ("sensor,length_mm,r_kohm\nL40-1,40,55,5\n", "line 2: 4 values under 3 headings; if that is a decimal comma"),
         ('length_mm,r_kohm\n"40,3\n', "is not a CSV file"),
+        ("length_mm;r_kohm\n640;1.382\n40;55\n", "line 2: is '1.382' 1382 with a mark between thousands, or a little over 1"),
+        ("length_mm;r_kohm\n40;55,5\n40;55.25\n640;1.382\n", "line 4: is '1.382' 1382"),
     ],
 )
 def test_tables_that_are_none(text: str, says: str, tmp_path: Path) -> None:
     (tmp_path / "a.csv").write_text(text)
     with pytest.raises(InputError, match=says):
         read_strips(tmp_path / "a.csv")
+
+
+def test_points_that_cannot_part_thousands_are_decimal(tmp_path: Path) -> None:
+    for text in ("length_mm,r_kohm\n40,55.125\n", "length_mm;r_kohm\n40;55.125\n40;55.25\n", "length_mm;r_kohm\n40;0.125\n"):
+        (tmp_path / "a.csv").write_text(text)
+        assert read_strips(tmp_path / "a.csv").r_kohm[0] in (55.125, 0.125)
+
+
+def test_a_note_with_an_umlaut_and_excels_first_line(tmp_path: Path) -> None:
+    (tmp_path / "a.csv").write_text("sep=;\nlength_mm;r_kohm;Anmerkung\n40;55,5;abgelöst\n", encoding="cp1252")
+    assert read_strips(tmp_path / "a.csv").r_kohm.tolist() == [55.5]
 
 
 def test_no_table(tmp_path: Path) -> None:

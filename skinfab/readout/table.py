@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skinfab.errors import InputError
+from skinfab.spreadsheet import read_csv_lines
 
 FloatArray = NDArray[np.float64]
 
@@ -90,28 +91,19 @@ def read_table(path: str | Path) -> Table:
         The file cannot be read, has no headings, no column of times, or a cell that is no number; which one is said.
     """
     path = Path(path)
-    try:
-        if (size := path.stat().st_size) > TABLE_MAX_BYTES:
-            raise InputError(f"{path} has {size / 1e9:.1f} GB; cut it into logs of less than {TABLE_MAX_BYTES / 1e9:g} GB")
-        data = path.read_bytes()
-        text = data.decode("utf-8-sig")
-    except OSError as fault:
-        raise InputError(f"{path}: {fault.strerror or fault}; give a log as a CSV file") from fault
-    except UnicodeDecodeError as fault:
-        raise InputError(f"{path} is not a text file ({fault.reason} at byte {fault.start}); give a log as a CSV file") from fault
-    remarks, head, rows, first = _parts(text, path)
+    lines, delimiter = read_csv_lines(path, max_bytes=TABLE_MAX_BYTES, wanted="a log as a CSV file")
+    remarks, head, rows, first = _parts(lines, delimiter, path)
     at = _time_column(head, path)
-    comma = _delimiter(text) == ";"
+    comma = delimiter == ";"
     columns = {
         name: _numbers(rows, k, comma=comma, where=f"{path}, column {name!r}", first=first) for k, name in enumerate(head) if k != at
     }
     time = _times(rows, at, head[at], comma=comma, where=f"{path}, column {head[at]!r}", first=first)
-    return Table(path.name, hashlib.sha256(data).hexdigest(), time, columns, remarks)
+    return Table(path.name, hashlib.sha256(path.read_bytes()).hexdigest(), time, columns, remarks)
 
 
-def _parts(text: str, path: Path) -> tuple[dict[str, str], list[str], list[list[str]], int]:
+def _parts(lines: Sequence[str], delimiter: str, path: Path) -> tuple[dict[str, str], list[str], list[list[str]], int]:
     """Remarks, headings, rows, and the number of the first row's line."""
-    lines = text.splitlines()
     remarks: dict[str, str] = {}
     start = 0
     while start < len(lines) and (lines[start].startswith("#") or not lines[start].strip()):
@@ -120,7 +112,7 @@ def _parts(text: str, path: Path) -> tuple[dict[str, str], list[str], list[list[
             remarks[name.strip().lower()] = value.strip()
         start += 1
     try:
-        rows = list(csv.reader(lines[start:], delimiter=_delimiter(text), strict=True))
+        rows = list(csv.reader(lines[start:], delimiter=delimiter, strict=True))
     except csv.Error as fault:
         raise InputError(f"{path} is not a CSV file: {fault}; give a log with a line of headings and rows of numbers") from fault
     head = [name.strip() for name in rows[0]] if rows else []
@@ -139,11 +131,6 @@ def _parts(text: str, path: Path) -> tuple[dict[str, str], list[str], list[list[
     if not body:
         raise InputError(f"{path} has headings and no rows; record something first")
     return remarks, head, body, start + 2
-
-
-def _delimiter(text: str) -> str:
-    head = next((line for line in text.splitlines() if line.strip() and not line.startswith("#")), "")
-    return max(",;\t", key=head.count)
 
 
 def _time_column(head: Sequence[str], path: Path) -> int:
