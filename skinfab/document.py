@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import json
 import math
-import re
 import zipfile
 from pathlib import Path
 from typing import Any
@@ -23,14 +22,13 @@ from skinfab.files import atomic_path
 from skinfab.mesh.model import Mesh
 from skinfab.patterns.registry import make_pattern, parameters
 from skinfab.pieces import Piece
-from skinfab.placement.sensor import Sensor
+from skinfab.placement.sensor import ID, ID_WORDS, Sensor
 from skinfab.skin import Skin, Source
 
 #: Version of `skin.json`. A reader takes its own and older ones.
 SCHEMA = 1
 
 #: Ids become file names: no separators, no dots.
-_ID = re.compile(r"[A-Za-z0-9_-]{1,64}")
 
 
 def save_skin(skin: Skin, path: str | Path) -> None:
@@ -247,8 +245,8 @@ def _get(entry: dict[str, Any], key: str, kind: type, where: str) -> Any:
 
 def _get_id(entry: dict[str, Any], key: str, where: str) -> str:
     id: str = _get(entry, key, str, where)
-    if not _ID.fullmatch(id):
-        raise InputError(f"{where}: {key} is {id[:40]!r}; it becomes a file name: 1 to 64 letters, digits, - or _")
+    if not ID.fullmatch(id):
+        raise InputError(f"{where}: {key} is {id[:40]!r}; an id has {ID_WORDS}")
     return id
 
 

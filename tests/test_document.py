@@ -211,7 +211,7 @@ def test_a_thickness_without_the_object(tmp_path: Path) -> None:
         (lambda d: d["mesh"].update(n_faces=10**15), "shape"),
         (lambda d: d["mesh"].update(n_vertices=-5), "negative"),
         (lambda d: d["mesh"].update(name="../../evil"), "cannot be part of a file name"),
-        (lambda d: d["pieces"][0].update(id="../P1"), "becomes a file name"),
+        (lambda d: d["pieces"][0].update(id="../P1"), "an id has 1 to 64 letters"),
         (lambda d: d["pieces"][1].update(id="p1"), "two pieces have the same id"),
         (lambda d: d["pieces"].append(dict(d["pieces"][0], id="P3")), "pieces/2/faces.npy is missing"),
         (lambda d: d["pieces"].__setitem__(0, 3), "must be an object"),

@@ -132,7 +132,7 @@ def run(args: argparse.Namespace) -> int:
     if not args.list:
         roomy, wider = with_room_for_nozzle(material, load_printer(skin.printer))
         sensors, warnings = _changed(skin, roomy, args) if changes else steps.place_sensors(skin, roomy, args.sensors)
-        skin, warnings = replace(skin, sensors=sensors), [*wider, *warnings]
+        skin, warnings = replace(skin, sensors=sensors), [*wider, *warnings, *_beyond_the_boards(sensors)]
         save_skin(skin, target)
     steps.say(warnings, kind="warning")
     if args.json:
@@ -142,6 +142,17 @@ def run(args: argparse.Namespace) -> int:
         print(_line(s, material, places=args.list or changes, parameters=args.list))
     print(f"{target}: {steps.counted(len(skin.sensors), 'sensor')}")
     return 0
+
+
+def _beyond_the_boards(sensors: tuple[Sensor, ...]) -> list[str]:
+    from skinfab.placement.share import CHANNELS
+    from skinfab.wiring import board_of
+
+    far = [s for s in sensors if s.channel >= CHANNELS]
+    if not far or len(sensors) > CHANNELS:  # too many sensors are told of where they are placed
+        return []
+    named = ", ".join(f"{s.id} on channel {s.channel} (board {board_of(s.channel)[0]})" for s in far)
+    return [f"{named}: two boards read channels 0 to {CHANNELS - 1}; give each a lower one, or wire more boards"]
 
 
 def _say_patterns(*, as_json: bool) -> int:

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from functools import cached_property
 
 from skinfab.paths import Path
 from skinfab.patterns.base import Pattern
+
+#: What an id of a sensor or piece may be: it becomes a file name, a comment in G-code and a cell of a spreadsheet.
+ID = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_-]{0,63}")
+ID_WORDS = "1 to 64 letters from A to Z, digits, - or _, and does not begin with -"
 
 
 @dataclass(frozen=True)

@@ -50,7 +50,7 @@ from skinfab.material import Material
 from skinfab.patterns.base import Pattern
 from skinfab.patterns.registry import PATTERNS, make_pattern
 from skinfab.placement.auto import AutoOptions
-from skinfab.placement.sensor import Sensor
+from skinfab.placement.sensor import ID, ID_WORDS, Sensor
 
 Vector: TypeAlias = tuple[float, float, float]
 
@@ -171,8 +171,8 @@ def _requests(tables: Sequence[Mapping[str, Any]], where: str, material: Materia
             )
         except InputError as fault:
             raise InputError(f"{here}: {fault}") from fault
-        if not isinstance(id, str) or not id:
-            raise InputError(f'{here}: id is {id!r}; it must be a name such as "C1"')
+        if not isinstance(id, str) or not ID.fullmatch(id):
+            raise InputError(f'sensor {k} of {where}: id is {str(id)[:40]!r}; it must be a name such as "C1": {ID_WORDS}')
         channel = _count(table["channel"], "channel", here) if "channel" in table else _next(channels, lambda n: n)
         ids.append(id)
         channels.append(channel)

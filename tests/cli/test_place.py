@@ -98,6 +98,13 @@ def test_changes_in_the_order_given(placed: Path) -> None:
     np.testing.assert_allclose(middle_of(after), np.add(middle_of(one), (0.5, 0.0)), atol=1e-9)
 
 
+def test_a_channel_beyond_the_two_boards_is_said(placed: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["place", str(placed), "--set", "C1", "channel=32"]) == 0
+    assert "C1 on channel 32 (board 3): two boards read channels 0 to 31" in capsys.readouterr().err
+    assert main(["place", str(placed), "--set", "C1", "channel=31"]) == 0
+    assert "boards" not in capsys.readouterr().err
+
+
 def test_two_sensors_swap_places(placed: Path) -> None:
     one, two = load_skin(placed).sensors
     words = []
