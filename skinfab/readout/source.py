@@ -97,7 +97,11 @@ class HostClock:
 
     def now(self) -> float:
         """This moment."""
-        return self._zero + time.monotonic()
+        return self.at(time.monotonic())
+
+    def at(self, monotonic: float) -> float:
+        """A moment of `time.monotonic`."""
+        return self._zero + monotonic
 
 
 class Unwrapped:
