@@ -41,7 +41,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         description="Fit the readings of a strain sensor to joint angles: the characteristic curve, models with hysteresis compared on the "
         "half of the log that they were not fitted to, and a calibration.json that control and replay load.",
     )
-    p.add_argument("log", metavar="LOG", type=Path, help="CSV with a line of headings, a column of times, readings and true angles")
+    p.add_argument("log", metavar="LOG", type=Path, help="CSV, MCAP, ROS bag or recording: times, readings, true angles")
     p.add_argument("--signal", metavar="COLUMN", required=True, help="heading of the readings, in any unit")
     p.add_argument("--angle", metavar="COLUMN", required=True, help="heading of the true angles, degrees")
     p.add_argument(
@@ -68,19 +68,20 @@ def run(args: argparse.Namespace) -> int:
         args.wrong_usage(f"--range {args.limits[0]:g} {args.limits[1]:g}: the first must be below the second")
     from calibration.calibrate import calibrate
     from calibration.prepare import prepare
-    from skinfab.readout.table import read_table
+    from skinfab.readout.logs.log import read_log_table
 
     limits = tuple(args.limits) if args.limits else None
-    table = read_table(args.log)
+    table, said = read_log_table(args.log)
     log = prepare(table, signal=args.signal, angle=args.angle, limits=limits)
     found = calibrate(log, model=args.model, degree=args.degree)
     tasks = [_new_task(path, args, log, found) for path in args.new_task]
     result = facts(table, log, found) | ({"new_tasks": tasks} if tasks else {})
+    result["notes"] = [*said, *result["notes"]]
     _write(args, table, log, found, result)
     if args.json:
         print(json.dumps(result, allow_nan=False))
         return 0
-    steps.say(found.notes)
+    steps.say(result["notes"])
     for line in _lines(found, tasks):
         print(line)
     print(f"{args.output}: calibration.json, calibration.png, result.json, samples.csv")
@@ -128,9 +129,9 @@ def _new_task(path: Path, args: argparse.Namespace, log: Prepared, found: Calibr
     """All models, fitted to the log, on another one."""
     from calibration.calibrate import rms_on
     from calibration.prepare import prepare
-    from skinfab.readout.table import read_table
+    from skinfab.readout.logs.log import read_log_table
 
-    other = prepare(read_table(path), signal=args.signal, angle=args.angle, limits=(log.low, log.high), u0=log.u0)
+    other = prepare(read_log_table(path)[0], signal=args.signal, angle=args.angle, limits=(log.low, log.high), u0=log.u0)
     return {"file": path.name, "n": other.n, "models": {name: {"rms_deg": error} for name, error in rms_on(log, found, other).items()}}
 
 

@@ -12,6 +12,7 @@ from calibration.document import load_calibration
 from calibration.models import MODELS
 from skinfab.cli import calibrate
 from skinfab.cli.main import main
+from skinfab.readout.logs.log import read_log, write_log
 
 FILES = ["calibration.json", "calibration.png", "result.json", "samples.csv"]
 
@@ -86,3 +87,16 @@ def test_a_place_that_is_none(log: Callable[..., str], tmp_path: Path, capsys: p
     (tmp_path / "file").write_text("")
     assert main(["calibrate", log(), "--signal", "U", "--angle", "PIP", "-o", str(tmp_path / "file")]) == 1
     assert "file" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("name", ["again.csv", "log.mcap", "log.bag", "bag"])
+def test_any_log_gives_the_same(log: Callable[..., str], tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str) -> None:
+    results = []
+    path = log()
+    write_log(read_log(path).recording, tmp_path / name)
+    for each in (path, tmp_path / name):
+        words = ["calibrate", str(each), "--signal", "U", "--angle", "PIP", "--model", "poly", "--degree", "2", "-o", str(tmp_path / "o")]
+        assert main([*words, "--json"]) == 0
+        results.append(json.loads(capsys.readouterr().out))
+    for key in ("n", "sse", "coefficients", "held_out_rms_deg", "notes"):
+        assert results[0][key] == results[1][key]
