@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TypeAlias
 
+from gcode.check_balance import balance_findings
 from gcode.check_bead import bead_findings, meant_area
 from gcode.check_commands import command_findings
 from gcode.check_file import file_findings
@@ -20,12 +21,13 @@ from gcode.check_lines import line_findings
 from gcode.check_mould import Mould, mould_findings, mould_notes
 from gcode.check_notes import notes
 from gcode.check_settings import setting_findings
+from gcode.check_waits import wait_findings
 from gcode.check_wall import Wall, wall_findings
 from gcode.emit import emit
 from gcode.geometry import Curve, Straight
 from gcode.printer import Bed, Printer
-from gcode.program import E_DECIMALS, F_DECIMALS, XY_DECIMALS, Comment, Prime, Program, Retract
-from gcode.trace import Finding, Move, Trace, trace_as_far
+from gcode.program import E_DECIMALS, F_DECIMALS, XY_DECIMALS, Program
+from gcode.trace import Finding, Move, trace_as_far
 from skinfab.errors import InputError
 from skinfab.tolerances import ARC_RADIUS_MM
 
@@ -36,11 +38,8 @@ HALF_XY, HALF_E, HALF_F = 0.5 * 10**-XY_DECIMALS, 0.5 * 10**-E_DECIMALS, 0.5 * 1
 
 
 def check_program(program: Program, printer: Printer, *, wall: Wall | None = None) -> tuple[Finding, ...]:
-    """Findings about a program, as the text it would become; line numbers are that text's.
-
-    Beyond `check_text`, prime and retract must cancel exactly within each pattern.
-    """
-    return (*_unbalanced(program), *check_text(emit(program, printer), printer, wall=wall))
+    """Findings about a program, as the text it would become; line numbers are that text's."""
+    return check_text(emit(program, printer), printer, wall=wall)
 
 
 def check_text(text: str, printer: Printer, *, wall: Wall | None = None) -> tuple[Finding, ...]:
@@ -121,12 +120,13 @@ def judge(
         *judged.faults,
         *(grbl_findings(judged) if printer.spindle else command_findings(judged, printer)),
         *(() if printer.spindle else setting_findings(judged, printer)),
+        *wait_findings(judged, printer),
         *height_findings(judged, printer),
         *ink_findings(judged, laid),
         *bead_findings(judged, laid, printer, meant_area(judged, bead_area)),
         *(mould_findings(judged, laid, mould) if mould else ()),
         *(wall_findings(judged, wall, printer.nozzle) if wall else ()),
-        *_retracts(judged, "mm^3 of ink" if printer.spindle else "mm of E"),
+        *balance_findings(judged, printer),
     ]
     for move in judged.moves:
         for what, remedy in _faults_of(move, printer):
@@ -228,37 +228,3 @@ def _speed(move: Move, printer: Printer) -> Iterator[tuple[str, str]]:
 
 def _too_fast(speed: float, limit: float, why: str) -> tuple[str, str]:
     return f"F{speed * 60:.1f} is above F{limit * 60:.1f}, the limit of {why}", f"lower F to {math.floor(limit * 600) / 10:.1f}"
-
-
-def _retracts(judged: Trace, unit: str) -> Iterator[Finding]:
-    """Each pattern must start with the nozzle as full as the one before it did."""
-    balance, first, last_change, laid = 0.0, None, 0, False
-    for move in judged.moves:
-        if move.e and not move.is_planar:
-            balance, last_change, laid = balance + move.e, move.line, False
-        elif move.e > 0 and not laid:
-            laid = True
-            first = balance if first is None else first
-            if abs(balance - first) > 2 * HALF_E:
-                change = "more" if balance > first else "less"
-                yield Finding(
-                    last_change,
-                    f"the nozzle then holds {abs(balance - first):.5f} {unit} {change} than at the first pattern's start",
-                    "prime as much before a pattern as was retracted after the last",
-                    move.pattern,
-                )
-                first = balance
-
-
-def _unbalanced(program: Program) -> Iterator[Finding]:
-    """Prime less retract is zero from each ``pattern`` comment to the next."""
-    pattern, balance = "", 0.0
-    for step in (*program.steps, Comment("pattern ")):
-        if isinstance(step, Prime) and pattern:
-            balance += step.volume
-        elif isinstance(step, Retract) and pattern:
-            balance -= step.volume
-        elif isinstance(step, Comment) and step.text.startswith("pattern"):
-            if pattern and balance:
-                yield Finding(0, f"prime less retract is {balance:.5f} mm^3 at its end, not zero", "make prime and retract equal", pattern)
-            pattern, balance = step.text.removeprefix("pattern").strip(), 0.0

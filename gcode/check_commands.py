@@ -27,9 +27,17 @@ PROBES = ("G29", "G30", "G33", "G34", "G35", "G38.2", "G38.3", "G38.4", "G38.5",
 TUNERS = ("M303", "M306")  # they heat without being told how far
 SHIFTS = ("G92",)
 WORKSPACES = ("G55", "G56", "G57", "G58", "G59", "G59.1", "G59.2", "G59.3")
+#: They load settings that were stored or built in (marlinfw.org, M501, M502); M500 only stores them.
+RESETS = ("M501", "M502")
+#: They run what is not in this file: another file, a macro (RepRapFirmware's M98; marlinfw.org, M32, M810).
+CALLS = ("M32", "M98", *(f"M{number}" for number in range(810, 820)))
 STOPS = ("M112", "M410")
-#: Motions of the firmware's own: pattern, retract, wipe, park, go to mesh point, resume, change of filament.
-UNFOLLOWED = ("G6", "G53", "G10", "G11", "G12", "G26", "G27", "G42", "G61", "M125", "M600", "M701", "M702")
+#: Motions of the firmware's own: pattern, retract, wipe, park, sled, go to mesh point, resume, calibrate, change of filament,
+#: babystep, stow (the head may rise for it).
+UNFOLLOWED = (
+    *("G6", "G53", "G10", "G11", "G12", "G26", "G27", "G31", "G32", "G42", "G61", "G425"),
+    *("M125", "M290", "M402", "M600", "M701", "M702"),
+)
 
 
 @dataclass(frozen=True)
@@ -89,6 +97,16 @@ def _probes(_: Command, state: State) -> bool:
     return state.z_by_hand or state.wet
 
 
+def _deploys(command: Command, state: State) -> bool:
+    """H and S ask for or set a mode of the probe and leave it where it is."""
+    return _probes(command, state) and not command.words.keys() & {"H", "S"}
+
+
+def _turns_servo(command: Command, state: State) -> bool:
+    """Without S it only tells where the servo is."""
+    return _probes(command, state) and "S" in command.words
+
+
 def _homes_z(command: Command, state: State) -> bool:
     return "Z" in homed_axes(command) and (state.z_by_hand or state.wet)
 
@@ -112,15 +130,15 @@ def _moves_origin(command: Command, _: State) -> str:
     return " and ".join(axis for axis in "XYZ" if axis in command.words)
 
 
+def _advances(command: Command, _: State) -> str:
+    return " ".join(f"{letter}{value:g}" for letter in "KL" if (value := command.words.get(letter)))
+
+
 def _frees_motors(command: Command, state: State) -> str:
     """S only says after how long they may rest."""
     if not state.ink_follows or not (state.wet or state.homed or state.z_by_hand) or "S" in command.words:
         return ""
     return " and ".join(axis for axis in "XYZE" if axis in command.words) or "every axis"
-
-
-def _waits(_: Command, state: State) -> bool:
-    return state.wet and state.ink_follows
 
 
 def _steps(command: Command, _: State) -> str:
@@ -162,6 +180,13 @@ RULES = (
     Rule(("G28",), _homes_z, "it homes Z: the probe dips into the wet mould", "home with G28 X Y and set Z = 0 by hand"),
     Rule(("G28",), _homes_what_is_by_hand, "it homes {text}, the profile homes nothing", "take it out and set the place by hand"),
     Rule(PROBES, _probes, "{code} probes: the probe dips into the wet mould", "take it out and set Z by hand"),
+    Rule(("M401",), _deploys, "{code} lets the probe down into the wet mould", "take it out and set Z by hand"),
+    Rule(
+        ("M280",),
+        _turns_servo,
+        "{code} turns a servo, as a rule the one that lets the probe down into the wet mould",
+        "take it out and set Z by hand",
+    ),
     Rule(
         tuple(sorted(HEATERS)),
         _heats,
@@ -183,6 +208,13 @@ RULES = (
         "M428 makes where the head is the origin: what follows lies elsewhere",
         "send it before the start, not in the file",
     ),
+    Rule(("M218",), _moves_origin, "M218 shifts a nozzle in {text}: what follows lies elsewhere", "take it out; there is one nozzle"),
+    Rule(
+        ("G68",),
+        _always,
+        "G68 turns all that follows where a firmware knows it, and is passed over where it does not",
+        "write the turned places themselves",
+    ),
     Rule(WORKSPACES, _always, "{code} takes an origin that is stored in the machine: what follows lies elsewhere", "take it out"),
     Rule(
         tuple(sorted(MOTORS_OFF)),
@@ -190,7 +222,6 @@ RULES = (
         "{code} frees the motors of {text} before the last ink: the head no longer stands where it was",
         "put it at the end",
     ),
-    Rule(("M0", "M1"), _waits, "{code} waits for a click in the midst of the ink, and the silicone sets meanwhile", "take it out"),
     Rule(STOPS, _always, "{code} stops the machine at once: what follows is not printed", "take it out"),
     Rule(
         ("M92",),
@@ -204,6 +235,19 @@ RULES = (
         "M200 makes E a volume and divides it by a filament's cross-section, the profile's E is mm of the pump's axis",
         "take it out, or send M200 D0",
     ),
+    Rule(
+        RESETS,
+        _always,
+        "{code} sets steps, limits and origin to what is stored or built in, and what was set by hand is lost",
+        "send it before you set the origin, not in the file",
+    ),
+    Rule(
+        ("M900",),
+        _advances,
+        "M900 {text} lets the pump run ahead of the head and back, so a move's ink lies elsewhere than on the move",
+        "send M900 K0",
+    ),
+    Rule(CALLS, _always, "{code} runs moves that are not in this file, which no rule can judge", "put those moves into this file"),
     Rule(("M211",), _lets_go_of_bounds, "M211 S0 lets the head run on beyond the ends of its axes", "take it out"),
     Rule(tuple(WORDS), _unknown_words, "{code} does not know {text}, which is passed over in silence", "correct the mistyped letter"),
     Rule(("G2", "G3"), _whole_circles, "P on an arc adds whole circles", "draw each half circle by a command of its own"),

@@ -35,11 +35,7 @@ def grbl_findings(judged: Trace) -> Iterator[Finding]:
     >>> print(*grbl_findings(trace("M83")))
     line 1: GRBL does not know M83 and halts there; take it out
     """
-    inked = [m.line for m in judged.moves if m.e > 0 and m.is_planar]
     for command in judged.commands:
-        if command.code in ("M0", "M1") and inked and inked[0] < command.line < inked[-1]:
-            what = f"{command.code} waits for a click in the midst of the ink, and the silicone sets meanwhile"
-            yield Finding(command.line, what, "take it out")
         if command.code and (fault := _fault(command)):
             yield Finding(command.line, *fault)
 

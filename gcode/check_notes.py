@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from gcode.check_waits import STOPPED
 from gcode.emit import TITLE, emit_comment
 from gcode.printer import Printer
 from gcode.trace import Trace
@@ -56,5 +57,5 @@ def _other_dialect(judged: Trace, printer: Printer) -> Iterator[str]:
 def _waits_before_ink(judged: Trace) -> Iterator[str]:
     first = min((m.line for m in judged.moves if m.e > 0 and m.is_planar), default=0)
     for command in judged.commands:
-        if command.code in ("M0", "M1") and command.line < first:
-            yield f"line {command.line}: {command.code} waits for a click before the first ink; pour only after it"
+        if command.code in STOPPED and command.line < first:
+            yield f"line {command.line}: {command.code} waits for {STOPPED[command.code]} before the first ink; pour only after it"

@@ -22,9 +22,9 @@ MOTORS_OFF = frozenset({"M18", "M84"})
 
 #: Commands whose words are read; any other line (messages, fans) is passed over as it stands.
 READ = HEATERS | SETTINGS | MOTORS_OFF | {"G0", "G1", "G2", "G3", "G4", "G5", "G20", "G21", "G28", "G90", "G91", "G92"}
-READ |= {"M3", "M4", "M5", "M82", "M83", "M206", "M220", "M221", "M302"}
+READ |= {"M3", "M4", "M5", "M82", "M83", "M206", "M218", "M220", "M221", "M280", "M302", "M401", "M900"}
 _FLAGS = MOTORS_OFF | {"G28"}
-_TAKE_T = HEATERS | SETTINGS | {"M206", "M221"}
+_TAKE_T = HEATERS | SETTINGS | {"M206", "M218", "M221", "M900"}
 
 #: A line beyond this is not G-code, and a file beyond that is not a skin's.
 LINE_LIMIT, FILE_LIMIT = 4096, 256 * 2**20

@@ -1,0 +1,68 @@
+"""Waits in the midst of the ink: silicone sets while a person is waited for, and a bead swells where the head stands."""
+
+from __future__ import annotations
+
+import math
+from bisect import bisect_left
+from collections.abc import Iterator
+
+from gcode.printer import Printer
+from gcode.trace import Finding, Move, Trace
+from gcode.words import Command
+
+#: Who or what is waited for, for any length of time (marlinfw.org, M0, M25 and M226); GRBL knows the first two.
+STOPPED = {"M0": "a click", "M1": "a click", "M25": "someone to resume", "M226": "a pin"}
+
+#: They wait for a temperature: with S while it is lower, with R in any case, so with some sensors at S0 too.
+TEMPERATURE = frozenset({"M109", "M116", "M190", "M191"})
+
+
+def wait_findings(judged: Trace, printer: Printer) -> Iterator[Finding]:
+    """Waits for somebody before the last ink, and any wait between two moves of one stroke.
+
+    A dwell after a lift, between strokes or before the ink is none of these.
+
+    Examples
+    --------
+    >>> from gcode.printer import load_printer
+    >>> from gcode.trace import trace
+    >>> text = "M83\\nM302 P1\\nG0 X0 Y0 Z1.6 F300\\nG4 P500\\nG1 X9 E36\\nG4 P500\\nG1 Y9 E36\\nG0 Z10\\nG4 P500"
+    >>> print(*wait_findings(trace(text), load_printer()))
+    line 6: G4 waits 0.5 s within a stroke, and ink gathers where the nozzle stands; put it behind the lift
+    """
+    inked = [m.line for m in judged.moves if m.e > 0 and m.is_planar]
+    first, last = min(inked, default=math.inf), max(inked, default=-math.inf)
+    ways = [m for m in judged.moves if m.is_planar or m.start[2] != m.end[2]]  # all but ink at standstill
+    lines = [m.line for m in ways]
+    for command in judged.commands:
+        code = command.code
+        if code not in STOPPED and code not in TEMPERATURE and code != "G4":
+            continue
+        if not first < command.line < last:
+            continue
+        if code in STOPPED:
+            if printer.spindle is None or code in ("M0", "M1"):
+                what = f"{code} waits for {STOPPED[code]} in the midst of the ink, and the silicone sets meanwhile"
+                yield Finding(command.line, what, "take it out")
+            continue
+        after = bisect_left(lines, command.line)
+        if not _is_stroke(ways[after - 1], ways[after]):
+            continue
+        if code == "G4" and (seconds := _seconds(command, printer)) > 0:
+            what = f"G4 waits {seconds:g} s within a stroke, and ink gathers where the nozzle stands"
+            yield Finding(command.line, what, "put it behind the lift", ways[after].pattern)
+        elif code != "G4" and printer.spindle is None:
+            what = f"{code} may wait for a temperature within a stroke, and ink gathers where the nozzle stands"
+            yield Finding(command.line, what, "take it out; the print is cold throughout", ways[after].pattern)
+
+
+def _is_stroke(before: Move, after: Move) -> bool:
+    return before.e > 0 and before.is_planar and after.e > 0 and after.is_planar
+
+
+def _seconds(command: Command, printer: Printer) -> float:
+    """P is ms for Marlin and s for GRBL; with both, Marlin takes S."""
+    p, s = (command.words.get(letter) or 0.0 for letter in "PS")
+    if printer.spindle:
+        return p
+    return s if "S" in command.words else p / 1000
