@@ -64,10 +64,10 @@ def test_grbl_waits_in_seconds() -> None:
     grbl = load_printer("generic-grbl")
     text = "G21\nG90\nG1 Z10 F300\nG1 X50 Y50\nG1 Z1.6\nM3 S242\n{}G1 X60\n{}G1 Y60\nM5\nG1 Z10\nG4 P9\n"
     for wait in ("G4 P0.5\n", "M5\nG4 P0.5\nM3\n"):  # with the pump on, and at rest
-        (fault,) = [f for f in check_text(text.format("", wait), grbl) if "stroke" in f.what]
+        (fault,) = [f for f in check_text(text.format("", wait), grbl) if "within a stroke" in f.what]
         assert fault.what == "G4 waits 0.5 s within a stroke, and ink gathers where the nozzle stands"
     # A pump that is let come to speed before the bead is no wait within it.
-    assert not [f for f in check_text(text.format("G4 P0.5\n", ""), grbl) if "stroke" in f.what]
+    assert not [f for f in check_text(text.format("G4 P0.5\n", ""), grbl) if "within a stroke" in f.what]
 
 
 @pytest.mark.parametrize("name", ["ender5plus-vipro", "generic-grbl"])
