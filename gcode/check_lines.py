@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from functools import reduce
 
 from gcode.trace import Finding
+from gcode.words import lines_of
 
 _SUMMED = re.compile(r"\s*([Nn]\s*\d+[^*]*)\*\s*(\d+)")
 
@@ -33,7 +34,7 @@ makes its own
     """
     if "*" not in text:
         return
-    for line, raw in enumerate(text.replace("\r\n", "\n").replace("\r", "\n").split("\n"), 1):
+    for line, raw in enumerate(lines_of(text), 1):
         found = _SUMMED.match(raw) if "*" in raw else None
         if found and int(found[2]) != (made := checksum(found[1])):
             yield Finding(

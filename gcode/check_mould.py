@@ -15,6 +15,7 @@ from gcode.geometry import Point
 from gcode.printer import Printer
 from gcode.seat import seat
 from gcode.trace import Finding, Trace
+from gcode.words import lines_of
 from skinfab.errors import InputError
 from skinfab.flatten.locate import Locator
 from skinfab.material import Material
@@ -65,8 +66,7 @@ def head_piece(text: str) -> str | None:
     >>> head_piece("; skinfab print program, version 1\\n; piece P2\\nG28 X Y"), head_piece("; piece P2\\nG28 X Y")
     ('P2', None)
     """
-    first, _, rest = text.partition("\n")
-    second = rest.partition("\n")[0]
+    first, second = (line.rstrip() for line in [*lines_of(text), ""][:2])
     return second.removeprefix(_HEAD).strip() if first == TITLE and second.startswith(_HEAD) else None
 
 

@@ -11,7 +11,7 @@ from gcode.emit import BEGIN, END, TITLE
 from gcode.geometry import Curve, Point, Shape, Straight
 from gcode.grbl import volume_along
 from gcode.program import CLEAN, Clean, Comment, Dwell, Extrude, Prime, Program, Retract, Step, Travel, on_grid
-from gcode.words import Command, read_commands
+from gcode.words import Command, lines_of, read_commands
 from skinfab.errors import InputError
 
 _HEADER = re.compile(
@@ -36,11 +36,11 @@ def parse(text: str) -> Program:
     >>> parse(emit(program, load_printer())) == program
     True
     """
-    header = _HEADER.match(text)
+    lines = lines_of(text)
+    header = _HEADER.match("\n".join(lines))
     if not header:
         raise InputError(f"line 1 is not {TITLE!r} with its facts below; only skinfab's own files can be parsed back, others only checked")
     bead_area = None if header[4] is None else _positive(header[4], 5, "mm^2")
-    lines = text.split("\n")
     if BEGIN not in lines or END not in lines:
         raise InputError(f"the lines {BEGIN!r} and {END!r} are not both there; the file is cut off")
     first, last = lines.index(BEGIN) + 1, len(lines) - 1 - lines[::-1].index(END)

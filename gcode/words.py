@@ -74,6 +74,17 @@ def read_text(path: str | Path) -> str:
         return data.decode("latin-1")  # old slicers write their comments so
 
 
+def lines_of(text: str) -> list[str]:
+    """Its lines, whatever ends them: a file that went through Windows or an old Mac reads as it was.
+
+    Examples
+    --------
+    >>> lines_of("G28\\r\\nG0 X1\\rG0 X2\\n")
+    ['G28', 'G0 X1', 'G0 X2', '']
+    """
+    return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
+
+
 def _example_in(folder: Path) -> str:
     # A results folder keeps its files one level down.
     found = min([*folder.glob("*.gcode"), *folder.glob("*/*.gcode")], default=None)
@@ -93,7 +104,7 @@ def read_commands(text: str) -> Iterator[Command]:
     >>> [(c.code, c.words) for c in read_commands("g01x1.5 Y-2 ; hello")]
     [('G1', {'X': 1.5, 'Y': -2.0})]
     """
-    for line, raw in enumerate(text.replace("\r\n", "\n").replace("\r", "\n").split("\n"), 1):
+    for line, raw in enumerate(lines_of(text), 1):
         body, mark, comment = raw.partition(";")
         if len(body) > LINE_LIMIT:
             raise InputError(f"line {line} is {len(body)} characters long; that is not a G-code command")

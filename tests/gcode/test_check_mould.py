@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from gcode.check import judge
-from gcode.check_mould import Mould, mould_of
+from gcode.check_mould import Mould, head_piece, mould_of
 from gcode.check_wall import wall_of
 from gcode.emit import emit
 from gcode.plan import Plan
@@ -71,3 +71,13 @@ def test_the_mould_stands_where_the_writer_puts_it(planned: Plan, make_piece: Ca
     skin = Skin(mesh, Source("plate.obj", "0" * 64, "mm", 1.0), np.empty((0, 2), dtype=np.int64), (piece,), ())
     mould = mould_of(skin, emit(planned.program, printer), printer=printer, material=material)
     assert mould.piece is piece and mould.offset == planned.offset
+
+
+@pytest.mark.parametrize("name", ["ender5plus-vipro", "generic-grbl"])
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\r", " \r\n"])
+def test_the_head_reads_the_same_with_any_line_end(planned: Plan, name: str, end: str) -> None:
+    own = load_printer(name)
+    text = emit(planned.program, own)
+    assert head_piece(text.replace("\n", end)) == "P1"
+    assert judge(text.replace("\n", end), own) == judge(text, own)
+    assert judge(text.replace("\n", end), load_printer("generic-marlin")).notes == judge(text, load_printer("generic-marlin")).notes

@@ -41,7 +41,8 @@ def test_parse_undoes_emit_for_any_steps(steps: list, name: str) -> None:
 
 
 def test_a_planned_program_comes_back(planned: Plan, printer: Printer) -> None:
-    assert parse(emit(planned.program, printer)) == planned.program
+    text = emit(planned.program, printer)
+    assert parse(text) == parse(text.replace("\n", "\r\n")) == planned.program
 
 
 @pytest.mark.parametrize(
