@@ -18,7 +18,7 @@ from gcode.check_grbl import grbl_findings
 from gcode.check_height import height_findings
 from gcode.check_ink import ink_findings, laid_pieces
 from gcode.check_lines import line_findings
-from gcode.check_mould import Mould, mould_findings, mould_notes
+from gcode.check_mould import Mould, mould_findings, piece_findings
 from gcode.check_notes import notes
 from gcode.check_settings import setting_findings
 from gcode.check_waits import wait_findings
@@ -125,14 +125,14 @@ def judge(
         *ink_findings(judged, laid),
         *bead_findings(judged, laid, printer, meant_area(judged, bead_area)),
         *(mould_findings(judged, laid, mould) if mould else ()),
+        *(piece_findings(text, mould) if mould else ()),
         *(wall_findings(judged, wall, printer.nozzle) if wall else ()),
         *balance_findings(judged, printer),
     ]
     for move in judged.moves:
         for what, remedy in _faults_of(move, printer):
             findings.append(Finding(move.line, what, remedy, move.pattern))
-    remarks = (*notes(judged, printer), *(mould_notes(text, mould) if mould else ()))
-    return Judgement(tuple(sorted(findings, key=lambda f: f.line)), remarks, str(fault or ""))
+    return Judgement(tuple(sorted(findings, key=lambda f: f.line)), tuple(notes(judged, printer)), str(fault or ""))
 
 
 def _faults_of(move: Move, printer: Printer) -> Iterator[tuple[str, str]]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from itertools import islice
 
 from gcode.clearance import Laid
 from gcode.geometry import Shape, Straight
@@ -31,8 +32,7 @@ def height_findings(judged: Trace, printer: Printer) -> Iterator[Finding]:
             laid.add(shape)
         elif (low := _lowest(move)) is not None and low < printer.heights.travel - STEP_XY:
             before = judged.moves[k - 1] if k else None
-            after = judged.moves[k + 1] if k + 1 < len(judged.moves) else None
-            yield from _low_travel(move, low, _last_inked(before, judged, k), after, laid, printer)
+            yield from _low_travel(move, low, _last_inked(before, judged, k), _next_inked(judged, k), laid, printer)
 
 
 def _print_height(move: Move, printer: Printer) -> Iterator[Finding]:
@@ -63,10 +63,18 @@ def _last_inked(before: Move | None, judged: Trace, k: int) -> Move | None:
     return before if before is not None and before.e > 0 else None
 
 
+def _next_inked(judged: Trace, k: int) -> Move | None:
+    """The extrusion a travel leads to, past what is pushed or drawn at standstill."""
+    for after in islice(judged.moves, k + 1, None):
+        if after.is_planar or not after.e:
+            return after if after.e > 0 else None
+    return None
+
+
 def _low_travel(move: Move, low: float, before: Move | None, after: Move | None, laid: Laid, printer: Printer) -> Iterator[Finding]:
     shape = move.shape
     process = printer.process
-    allowed = process.overrun_end if before is not None else process.overrun_start if _enters(after) else 0.0
+    allowed = process.overrun_end if before is not None else process.overrun_start if after is not None else 0.0
     if shape is None or at_cleaning_place(move, low, printer):
         return
     remedy = f"lift to Z{printer.heights.travel:g} before moving on"
@@ -89,11 +97,6 @@ def at_cleaning_place(move: Move, low: float, printer: Printer) -> bool:
         and abs(end[1] - y - place.y) <= STEP_XY
         for end in (move.start, move.end)
     )
-
-
-def _enters(after: Move | None) -> bool:
-    # Either the path begins here, or the prime at its start does.
-    return after is not None and after.e > 0
 
 
 def bead_radius(move: Move | None, printer: Printer) -> float:

@@ -8,10 +8,8 @@ import pytest
 
 from gcode.check import check_program, check_text
 from gcode.emit import emit
-from gcode.geometry import Straight
 from gcode.plan import Plan
 from gcode.printer import Printer
-from gcode.program import Comment, Extrude, Prime, Program, Retract, Travel
 
 HEAD = "G28 X Y\nG90\nM83\nM302 P1\nG0 Z10 F300\nG0 X100 Y100 F6000\nG0 Z1.6 F300\n"
 BODY = "G1 X110 Y100 E40 F240\n"
@@ -111,30 +109,3 @@ def test_findings_name_the_pattern_and_come_in_order(planned: Plan, printer: Pri
     assert faults and {f.pattern for f in faults} == {"C2"}
     assert [f.line for f in faults] == sorted(f.line for f in faults)
     assert str(faults[0]).startswith(f"line {faults[0].line}, pattern C2: ")
-
-
-def second_pattern(retract: float, prime: float) -> str:
-    return (
-        "G1 E4 F400\nG1 X110 Y100 E40 F240\n"
-        f"G1 E-{retract} F400\nG0 Z10 F300\nG0 X100 Y150 F6000\nG0 Z1.6 F300\n"
-        f"G1 E{prime} F400\nG1 X110 Y150 E40 F240\nG1 E-4 F400\nG0 Z10 F300\n"
-    )
-
-
-def test_retracts_must_be_undone(printer: Printer) -> None:
-    assert not found(HEAD + second_pattern(4, 4), printer)
-    ((line, what),) = found(HEAD + second_pattern(4, 3), printer)
-    assert line == 14 and "1.00000 mm of E less" in what
-    ((line, what),) = found(HEAD + second_pattern(2, 4), printer)
-    assert line == 14 and "2.00000 mm of E more" in what
-
-
-def test_balance_within_each_pattern_of_a_program(printer: Printer) -> None:
-    def program(retract: float) -> Program:
-        line = Extrude(Straight((100.0, 100.0), (110.0, 100.0)), 4.84, 4.0)
-        down = (Travel(z=10.0, speed=5.0), Travel(x=100.0, y=100.0, speed=50.0), Comment("pattern C1"), Travel(z=1.6, speed=5.0))
-        return Program("P1", (*down, Prime(0.5, 1.0), line, Retract(retract, 1.0), Travel(z=10.0, speed=5.0)))
-
-    assert check_program(program(0.5), printer) == ()
-    (fault,) = check_program(program(0.4), printer)
-    assert "not zero" in fault.what and fault.pattern == "C1"

@@ -17,9 +17,9 @@ LINE = "G1 X110 Y100 E40 F240\n"
     ("body", "says"),
     [
         (LINE + "G0 X111 Y100\nG0 Z10 F300", None),  # an end overrun of 1 mm
-        (LINE + "G1 E-4 F400\nG0 X111 Y100 F240\nG0 Z10 F300", None),  # and after a retract
+        ("G1 E4 F400\n" + LINE + "G1 E-4 F400\nG0 X111 Y100 F240\nG0 Z10 F300", None),  # and after a retract
         ("G0 X101 Y100\nG1 X110 Y100 E36 F240", None),  # a start overrun
-        ("G0 X101 Y100\nG1 E4 F400\nG1 X110 Y100 E36 F240", None),
+        ("G0 X101 Y100\nG1 E4 F400\nG1 X110 Y100 E36 F240\nG1 E-4 F400", None),
         (LINE + "G0 X112 Y100\nG0 Z10 F300", "below the travel height"),  # too long for one
         (LINE + "G0 X120 Y120\nG1 X130 Y120 E40", "below the travel height"),  # on to the next pattern
         (LINE + "G0 X130 Y130 Z10 F300", "below the travel height"),  # lifting on the way

@@ -1,0 +1,165 @@
+"""Ink that is pushed or drawn at standstill: a pattern is primed, retracted by as much, and nothing else is pushed out.
+
+Where a file has ``pattern NAME`` comments, each pattern must end with the nozzle as full as it began; any other file is
+judged as a whole, and each of its strokes must begin as the first one did. What is pushed out before the first ink, away
+from it, fills the nozzle and is no prime.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from gcode.printer import Printer
+from gcode.program import E_DECIMALS, XY_DECIMALS
+from gcode.trace import Finding, Move, Trace
+
+#: Half a step of E, twice: that of a prime and that of its retract.
+_ROUNDING = 10**-E_DECIMALS
+
+#: The same for a file of anyone's: absolute E with three decimals is usual.
+_FOREIGN_ROUNDING = 10**-3
+
+
+@dataclass(frozen=True)
+class _Run:
+    """Moves without a way in X and Y, from one move in the plane to the next: is that one ink, and the one before them?"""
+
+    moves: tuple[Move, ...]
+    leaves: bool
+    enters: bool
+    is_first: bool  # no ink was laid before
+
+    @property
+    def pushed(self) -> float:
+        return math.fsum(m.e for m in self.moves)
+
+
+def balance_findings(judged: Trace, printer: Printer) -> Iterator[Finding]:
+    """What is wrong with prime and retract.
+
+    Examples
+    --------
+    >>> from gcode.printer import load_printer
+    >>> from gcode.trace import trace
+    >>> start = "M83\\nM302 P1\\nG0 X0 Y0 F600\\nG0 Z1.6\\n"
+    >>> print(*balance_findings(trace(start + "G1 E4\\nG1 X9 E36\\nG1 E-4"), load_printer()))
+    <BLANKLINE>
+    >>> print(*balance_findings(trace(start + "G1 E4\\nG1 X9 E36\\nG1 E4"), load_printer()))
+    line 7: E4 is pushed out at standstill where no path follows: it leaves a blob; turn its sign to retract, or take it out
+    """
+    named = any(m.pattern for m in judged.moves)
+    inked = [m for m in judged.moves if m.e > 0 and m.is_planar]
+    first, last = {m.pattern: m for m in reversed(inked)}, {m.pattern: m.line for m in inked}
+    faulty: set[str] = set()
+    standing: dict[str, list[Move]] = {}
+    for run in _runs(judged.moves):
+        first_filling = run.is_first and not run.enters and run.pushed > 0
+        for move in (m for m in run.moves if m.e):
+            if found := _misplaced(move, run, last.get(move.pattern, 0), printer):
+                faulty.add(move.pattern)
+                yield Finding(move.line, *found, move.pattern)
+            if not (first_filling and (not named or _is_at_cleaning_place(move, printer))):
+                standing.setdefault(move.pattern, []).append(move)
+    # One fault at a time: a wrong sign unbalances its pattern, too.
+    if named:
+        for pattern in dict.fromkeys([*first, *standing]):
+            if pattern not in faulty:
+                yield from _of_a_pattern(standing.get(pattern, []), first.get(pattern), printer)
+    elif not faulty:
+        yield from _as_a_whole(judged.moves, standing.get("", []), printer)
+
+
+def _runs(moves: Sequence[Move]) -> Iterator[_Run]:
+    held: list[Move] = []
+    before: Move | None = None
+    inked = False
+    for move in moves:
+        if not move.is_planar:
+            held.append(move)
+            continue
+        yield _Run(tuple(held), before is not None and before.e > 0, move.e > 0, not inked)
+        held, before, inked = [], move, inked or move.e > 0
+    yield _Run(tuple(held), before is not None and before.e > 0, False, not inked)
+
+
+def _misplaced(move: Move, run: _Run, last_ink: int, printer: Printer) -> tuple[str, str] | None:
+    """Ink on a lift, a prime that draws, or ink that is left as a blob; `last_ink` is the line of the pattern's."""
+    amount = _amount(move.e, printer)
+    if move.start[2] != move.end[2]:
+        return f"{amount} on a move in Z: the ink is drawn out to a thread", "push or draw ink at standstill, on a line of its own"
+    if move.e < 0 and run.enters and not run.leaves and run.pushed < 0:
+        return f"{amount} draws ink back right before the path, where a prime pushes it", "turn its sign, or take it out"
+    if move.e > 0 and not run.enters and (run.leaves or move.line > last_ink) and not _is_at_cleaning_place(move, printer):
+        return f"{amount} is pushed out at standstill where no path follows: it leaves a blob", "turn its sign to retract, or take it out"
+    return None
+
+
+def _is_at_cleaning_place(move: Move, printer: Printer) -> bool:
+    place, (x, y) = printer.cleaning, printer.bed.origin
+    step = 10**-XY_DECIMALS
+    here_x, here_y = move.end[:2]
+    return (
+        place is not None
+        and here_x is not None
+        and here_y is not None
+        and abs(here_x - x - place.x) <= step
+        and abs(here_y - y - place.y) <= step
+    )
+
+
+def _of_a_pattern(standing: Sequence[Move], first: Move | None, printer: Printer) -> Iterator[Finding]:
+    if standing:
+        primed, drawn = (math.fsum(abs(m.e) for m in standing if (m.e > 0) == forward) for forward in (True, False))
+        if abs(primed - drawn) > _ROUNDING * len(standing):
+            yield Finding(standing[-1].line, *_unequal(primed, drawn, printer), standing[-1].pattern)
+    elif first and first.pattern and printer.pump.prime:
+        own = _amount(printer.pump.prime * printer.pump.e_per_mm3, printer)
+        remedy = f"prime {own} before it and retract as much after it, or say prime = 0 and retract = 0 under [pump] in the printer profile"
+        yield Finding(first.line, "its path is neither primed nor retracted", remedy, first.pattern)
+
+
+def _unequal(primed: float, drawn: float, printer: Printer) -> tuple[str, str]:
+    push, draw = _amount(primed, printer), _amount(drawn, printer)
+    if not drawn:
+        return f"it primes {push} and does not retract: the nozzle drips", "retract as much after the path"
+    if not primed:
+        return f"it retracts {draw} and does not prime: its path begins without ink", "prime as much before the path"
+    return f"it primes {push} and retracts {draw}: it must end with as much ink as it began", "make both the same"
+
+
+def _as_a_whole(moves: Sequence[Move], standing: Sequence[Move], printer: Printer) -> Iterator[Finding]:
+    """Each stroke must start with the nozzle as full as the first one found it, and so must the next file."""
+    lines = {m.line for m in standing}
+    balance, count, laid = 0.0, 0, False
+    at_first: float | None = None
+    last: Move | None = None
+    for move in moves:
+        if move.line in lines:
+            balance, last, count, laid = balance + move.e, move, count + 1, False
+        elif move.e > 0 and move.is_planar and not laid:
+            laid = True
+            at_first = balance if at_first is None else at_first
+            if last and abs(balance - at_first) > _FOREIGN_ROUNDING * count:
+                amount, change = _amount(abs(balance - at_first), printer), "more" if balance > at_first else "less"
+                yield Finding(
+                    last.line,
+                    f"the nozzle then holds {amount} {change} than at the first stroke's start",
+                    "prime as much before each stroke as is retracted after it",
+                    last.pattern,
+                )
+                return
+    if at_first is not None and last and abs(balance) > _FOREIGN_ROUNDING * count:
+        amount, change = _amount(abs(balance), printer), "more" if balance > 0 else "less"
+        yield Finding(
+            last.line,
+            f"the nozzle then holds {amount} {change} at the end than before the first prime",
+            "prime as much before each stroke as is retracted after it",
+            last.pattern,
+        )
+
+
+def _amount(e: float, printer: Printer) -> str:
+    """As the file says it: E, or what the spindle pumps."""
+    return f"{e:.5g} mm^3" if printer.spindle else f"E{e:.6g}"
