@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from calibration.models import MODELS, Model, model_of
 from skinfab.errors import InputError
 from skinfab.files import atomic_write
+from skinfab.readout.bridge import relative
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
@@ -59,7 +60,7 @@ class SensorCalibration:
 
     def relative(self, readings: FloatArray) -> FloatArray:
         """dU/U0 of readings."""
-        return (readings - self.u0) / self.u0
+        return relative(readings, self.u0)
 
     def angles(self, time: FloatArray, readings: FloatArray) -> tuple[FloatArray, BoolArray]:
         """Angles (deg) of readings in the order of time (s), and which lie outside what the sensor knows.

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from calibration.models import Samples
 from skinfab.errors import InputError
+from skinfab.readout.bridge import STILL_S, at_rest, relative
 from skinfab.readout.filters import Lowpass
 from skinfab.readout.table import Table
 
@@ -21,10 +22,6 @@ BoolArray = NDArray[np.bool_]
 CUTOFF_HZ = 5.0
 #: A hole in the log is bridged by a straight line up to this, s; at 5 Hz nothing is lost that the filter would have kept.
 MAX_GAP_S = 0.1
-#: U0 is the median of this long a window, s.
-STILL_S = 0.2
-#: The window counts as still where its readings move by no more than this part of the whole log's span.
-STILL_PART = 0.05
 #: Into so many parts each half of a log without marked trials is cut for cross-validation.
 PARTS = 5
 
@@ -142,12 +139,17 @@ def prepare(
             "record without drop-outs"
         )
     if u0 is None:
-        u0, said = _at_rest(filtered[0][1], float(np.ptp(readings)), rate)
-        notes += [f"{table.file}: {said}"] if said else []
+        rest = at_rest(filtered[0][1], rate, span=float(np.ptp(readings)))
+        u0 = rest.level
+        if not rest.still:
+            notes.append(
+                f"{table.file}: the joint never rests for {STILL_S:g} s; U0 is the median of the stillest such window, at "
+                f"{rest.at_s:.1f} s, where it moves by {100 * rest.moved:.0f} % of the span"
+            )
     if not u0:
         raise InputError(f"{table.file}: {signal!r} is 0 at rest, so that a relative change means nothing; is it zeroed already?")
     limits = limits or _usual_limits(np.concatenate([run[2] for run in filtered]), table.file, notes)
-    runs = tuple(Samples(t, (u - u0) / u0, a, (a >= limits[0]) & (a <= limits[1])) for t, u, a, _ in filtered)
+    runs = tuple(Samples(t, relative(u, u0), a, (a >= limits[0]) & (a <= limits[1])) for t, u, a, _ in filtered)
     if not any(run.fit.any() for run in runs):
         low, high = float(angles.min()), float(angles.max())
         raise InputError(
@@ -182,22 +184,6 @@ def _filtered(
         u, a = (low.zero_phase(np.interp(even, t, values[run])) for values in (readings, angles))
         out.append((even, u, a, number))
     return out, short
-
-
-def _at_rest(readings: FloatArray, span: float, rate: float) -> tuple[float, str]:
-    """The reading at rest, and what is to be said of it."""
-    n = max(round(STILL_S * rate), 1)
-    count = max(len(readings) - n + 1, 1)
-    windows = np.lib.stride_tricks.sliding_window_view(readings[: count + n - 1], min(n, len(readings)))
-    moves = np.ptp(windows, axis=1)
-    still = np.flatnonzero(moves <= STILL_PART * span)
-    if len(still):
-        return float(np.median(windows[still[0]])), ""
-    best = int(np.argmin(moves))
-    return float(np.median(windows[best])), (
-        f"the joint never rests for {STILL_S:g} s; U0 is the median of the stillest such window, at {best / rate:.1f} s, where it moves by "
-        f"{100 * moves[best] / span:.0f} % of the span"
-    )
 
 
 def _usual_limits(angles: FloatArray, file: str, notes: list[str]) -> tuple[float, float]:
