@@ -24,7 +24,8 @@ from skinfab.pieces import Piece
 if TYPE_CHECKING:
     from skinfab.skin import Skin
 
-_HEAD = "; piece "
+#: How the second line of skinfab's own files begins.
+_HEAD, _HEAD_LINE = "; piece ", 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,10 +71,11 @@ def head_piece(text: str) -> str | None:
     return second.removeprefix(_HEAD).strip() if first == TITLE and second.startswith(_HEAD) else None
 
 
-def mould_notes(text: str, mould: Mould) -> Iterator[str]:
-    """Is it for another piece, by its own head?"""
+def piece_findings(text: str, mould: Mould) -> Iterator[Finding]:
+    """Is it for another piece, by its own head? Then ink may lie in the mould by chance, and still not where it belongs."""
     if (named := head_piece(text)) not in (None, mould.piece.id):
-        yield f"its head says it is for piece {named}, it is judged for piece {mould.piece.id}"
+        what = f"its head says it is for piece {named}, it is judged for piece {mould.piece.id}"
+        yield Finding(_HEAD_LINE, what, "give the file of that piece, or --piece as the head says")
 
 
 def mould_findings(judged: Trace, laid: Pieces, mould: Mould) -> Iterator[Finding]:

@@ -172,8 +172,8 @@ def test_which_piece_a_foreign_file_is_for(document: Path, tmp_path: Path, capsy
     assert main(["gcode", "check", str(file), "--skin", str(document), "--piece", "P7"]) == 1
     assert "there is no piece P7 in the skin; give --piece, one of P1" in capsys.readouterr().err
     file.write_text(text.replace("; piece P1", "; piece P9"))
-    assert main(["gcode", "check", str(file), "--skin", str(document), "--piece", "P1"]) == 0
-    assert "note: its head says it is for piece P9, it is judged for piece P1" in capsys.readouterr().out
+    assert main(["gcode", "check", str(file), "--skin", str(document), "--piece", "P1"]) == 3
+    assert "line 2: its head says it is for piece P9, it is judged for piece P1; give the file of that piece" in capsys.readouterr().out
     assert main(["gcode", "check", str(file), "--skin", str(tmp_path / "absent.skin")]) == 1
 
 
