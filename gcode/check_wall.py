@@ -137,7 +137,12 @@ def _finding(move: Move, z: float, room: float, need: float, wall: Wall, nozzle:
             f"at X{x:.2f} Y{y:.2f} Z{z:.2f} the nozzle's axis is {room:.2f} mm from the mould's wall, which stands {wall.top:g} mm high; "
             f"its radius of {nozzle.outer_radius:g} mm and {need - nozzle.outer_radius:.2f} mm of clearance need {need:.2f}"
         )
-    remedy = f"move the sensor {need - room:.2f} mm inward, or take a thinner nozzle (nozzle, outer_radius in the printer profile)"
+    inward = f"move the sensor {need - room:.2f} mm inward, or take a thinner nozzle (nozzle, outer_radius in the printer profile)"
+    lift = f"lift to Z{wall.top:g} or more before it"
+    if move.e <= 0:  # where it leads to ink or from it the sensor may be too near all the same, unless it is on the wall
+        remedy = f"{lift}; where that is the travel height raise travel under [heights]" if room < _STEP else f"{lift}, or {inward}"
+    else:
+        remedy = inward
     return Finding(move.line, what, remedy, move.pattern)
 
 

@@ -60,6 +60,33 @@ def test_moves_by_the_wall(make_piece: Callable[..., Piece], upright: Material, 
         assert re.search(says, faults[0].what), faults[0].what
 
 
+@pytest.mark.parametrize(
+    ("body", "remedies"),
+    [
+        ("G1 X99.66 E8 F240", ["move the sensor 0.50 mm inward, or take a thinner nozzle"]),
+        (
+            "G0 Z2 F300\nG0 X101 F6000",
+            ["lift to Z3 or more before it; where that is the travel height raise travel under [heights]"],
+        ),
+        (
+            "G0 Z10 F300\nG0 X100 F6000\nG0 Z1.6 F300",
+            ["lift to Z3 or more before it; where that is the travel height raise travel under [heights]"],
+        ),
+        (
+            "G0 Z10 F300\nG0 X99.66 F6000\nG0 Z1.6 F300\nG1 E1 F60\nG0 Z10 F300",
+            [
+                "lift to Z3 or more before it, or move the sensor 0.50 mm inward, or take a thinner nozzle",
+                "move the sensor 0.50 mm inward, or take a thinner nozzle",
+                "lift to Z3 or more before it, or move the sensor 0.50 mm inward, or take a thinner nozzle",
+            ],
+        ),
+    ],
+)
+def test_the_remedy_suits_what_moves(make_piece: Callable[..., Piece], upright: Material, body: str, remedies: list[str]) -> None:
+    faults = found(body, make_piece(100, 100), upright)
+    assert [f.remedy.partition(" (nozzle")[0] for f in faults] == remedies
+
+
 @given(st.floats(0.2, 3.0), st.floats(0.0, 1.0), st.floats(-math.pi, math.pi))
 def test_it_refuses_at_the_needed_room_and_no_sooner(
     make_piece: Callable[..., Piece], radius: float, clearance: float, angle: float
