@@ -42,28 +42,33 @@ def bead_findings(judged: Trace, pieces: Pieces, printer: Printer, area: float) 
     >>> from gcode.trace import trace
     >>> judged, printer = trace("M83\\nM302 P1\\nG0 X0 Y0 Z1.6 F300\\nG1 X20 E0.66"), load_printer()
     >>> print(*bead_findings(judged, laid_pieces(judged, printer), printer, 0.484))
-    line 4: its bead is 0.00399 mm^2 in cross-section, 0.0083 of the 0.484 meant; lay 4 mm of E per mm, or give the file's own printer
+    line 4: its bead is 0.00399 mm^2 in cross-section over 20 mm, 0.0083 of the 0.484 meant; lay 4 mm of E per mm, or give the file's \
+own printer
     """
     inked = np.flatnonzero(pieces.radius > 0)
     if not len(inked):
         return
     stroke, part = pieces.stroke[inked], np.floor(pieces.begin[inked] / _BY_MM)
     first = np.flatnonzero(np.concatenate([[True], (np.diff(stroke) != 0) | (np.diff(part) != 0)]))
+    last = np.append(first[1:], len(inked))  # the one behind
     lengths = pieces.end[inked] - pieces.begin[inked]
     length = np.add.reduceat(lengths, first)
     ink = np.add.reduceat(lengths * math.pi * pieces.radius[inked] ** 2, first)
     areas = ink / length
     # A part cut short by the stroke's end is judged only if it is all there is of it.
-    whole = (length >= _BY_MM / 10) | (np.bincount(stroke)[stroke[first]] == np.diff(np.append(first, len(inked))))
+    whole = (length >= _BY_MM / 10) | (np.bincount(stroke)[stroke[first]] == last - first)
     faulty = np.flatnonzero(whole & ((areas > TIMES * area) | (areas < area / TIMES)))
-    moves = pieces.move[inked[first[faulty]]]
+    # A part is told at whatever of it brings most ink too much or too little.
+    excess = np.abs(math.pi * pieces.radius[inked] ** 2 - area) * lengths
+    most = np.lexsort((excess, np.repeat(np.arange(len(first)), last - first)))[last - 1]
+    moves = pieces.move[inked[most[faulty]]]
     _, once = np.unique(moves, return_index=True)
     per_mm = f"lay {area * printer.pump.e_per_mm3:.3g} mm of E per mm" if printer.spindle is None else "change S, or F against it"
     for k in once:
-        move, found = judged.moves[moves[k]], areas[faulty[k]]
+        move, found, over = judged.moves[moves[k]], areas[faulty[k]], length[faulty[k]]
         yield Finding(
             move.line,
-            f"its bead is {found:.3g} mm^2 in cross-section, {found / area:.2g} of the {area:.3g} meant",
+            f"its bead is {found:.3g} mm^2 in cross-section over {over:.2g} mm, {found / area:.2g} of the {area:.3g} meant",
             f"{per_mm}, or give the file's own printer",
             move.pattern,
         )

@@ -24,7 +24,15 @@ def test_one_thick_or_thin_move_in_a_sound_stroke(times: float, printer: Printer
         assert not faults
     else:
         ((line, what),) = faults
-        assert line == 9 and f"{0.484 * times:.3g} mm^2 in cross-section, {times:.2g} of the 0.484 meant" in what
+        assert line == 9 and f"{0.484 * times:.3g} mm^2 in cross-section over 5 mm, {times:.2g} of the 0.484 meant" in what
+
+
+def test_a_short_move_is_named_with_what_it_is_averaged_over(printer: Printer) -> None:
+    quarters = [0.25 * E] * 40
+    quarters[21] *= 9.9  # 0.25 mm of a mm
+    body = "".join(f"G1 X{100.25 + 0.25 * k:.4f} E{e:.5f} F240\n" for k, e in enumerate(quarters))
+    ((line, what),) = found(body, printer)
+    assert line == 8 + 21 and "its bead is 1.56 mm^2 in cross-section over 1 mm, 3.2 of the 0.484 meant" in what
 
 
 def test_the_whole_of_a_short_stroke_is_judged(printer: Printer) -> None:
