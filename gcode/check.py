@@ -55,12 +55,12 @@ def check_text(text: str, printer: Printer, *, wall: Wall | None = None) -> tupl
     Examples
     --------
     >>> from gcode.printer import load_printer
-    >>> text = "G28 X Y\\nM83\\nM302 P1\\nG0 X340 Y10 F600\\nG0 Z1.6 F300\\nG3 X340 Y30 I0 J10 E100 F200\\nG0 Z10 F300"
+    >>> text = "G28 X Y\\nM83\\nM302 P1\\nG0 Z10 F300\\nG0 X340 Y10 F600\\nG0 Z1.6 F300\\nG3 X340 Y30 I0 J10 E100 F200\\nG0 Z10 F300"
     >>> for finding in check_text(text, load_printer()):
     ...     print(finding)
     >>> for finding in check_text(text.replace("X340", "X345"), load_printer()):
     ...     print(finding)
-    line 6: it reaches X355.0000, the bed ends at X350.0000; move the pattern inward or choose a larger printer
+    line 7: it reaches X355.0000, the bed ends at X350.0000; move the pattern inward or choose a larger printer
     """
     judgement = judge(text, printer, wall=wall)
     if judgement.broken_off:
@@ -107,9 +107,9 @@ def judge(
     Examples
     --------
     >>> from gcode.printer import load_printer
-    >>> judgement = judge("G28 X Y\\nG0 X400 F600\\nG5 X1", load_printer())
+    >>> judgement = judge("G28 X Y\\nG0 Z10 F300\\nG0 X400\\nG5 X1", load_printer())
     >>> [finding.what for finding in judgement.findings], judgement.broken_off
-    (['it reaches X400.0000, the bed ends at X350.0000'], 'line 3: G5 is not supported; use lines and arcs in the XY plane')
+    (['it reaches X400.0000, the bed ends at X350.0000'], 'line 4: G5 is not supported; use lines and arcs in the XY plane')
     """
     judged, fault = trace_as_far(text, spindle=printer.spindle)
     laid = laid_pieces(judged, printer)

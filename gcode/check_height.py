@@ -20,11 +20,14 @@ def height_findings(judged: Trace, printer: Printer) -> Iterator[Finding]:
     """Findings about heights, in the order of the moves.
 
     A low travel is accepted as an overrun only: straight into or out of an extrusion, no longer than the profile's
-    own, and clear of all ink but the bead it leaves; or along the wiping of the cleaning place, at its height.
+    own, and clear of all ink but the bead it leaves; or along the wiping of the cleaning place, at its height. Homing
+    leaves Z unknown, and so does a file that does not say it.
     """
     laid = Laid()
     for k, move in enumerate(judged.moves):
         shape = move.shape
+        if move.is_planar and move.e <= 0 and move.start[2] is None:
+            yield _blind(move, printer)
         if shape is None:
             continue
         if move.e > 0:
@@ -33,6 +36,11 @@ def height_findings(judged: Trace, printer: Printer) -> Iterator[Finding]:
         elif (low := _lowest(move)) is not None and low < printer.heights.travel - STEP_XY:
             before = judged.moves[k - 1] if k else None
             yield from _low_travel(move, low, _last_inked(before, judged, k), _next_inked(judged, k), laid, printer)
+
+
+def _blind(move: Move, printer: Printer) -> Finding:
+    what = "it travels at an unknown height: the nozzle may stand below the mould's wall or in wet ink"
+    return Finding(move.line, what, f"lift to Z{printer.heights.travel:g} first, by a move in Z alone", move.pattern)
 
 
 def _print_height(move: Move, printer: Printer) -> Iterator[Finding]:

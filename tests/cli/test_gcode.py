@@ -205,8 +205,8 @@ def test_what_is_no_print_at_all(document: Path, tmp_path: Path, capsys: pytest.
     ("content", "says"),
     [
         (b"\0\1\2", "binary file"),
-        (b"G1 X1\nG1 XNaN", "line 2: cannot read 'XNaN'"),
-        (b"G1 X1\n\xff\xfe\xfd", "line 2: cannot read"),
+        (b"G1 Z1\nG1 XNaN", "line 2: cannot read 'XNaN'"),
+        (b"G1 Z1\n\xff\xfe\xfd", "line 2: cannot read"),
         (b"G1 X" + 400 * b"9", "not a finite number"),
         (b"G1 X" + 10_000 * b"1", "characters long"),
     ],

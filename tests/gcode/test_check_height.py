@@ -1,13 +1,22 @@
 """Low travel: overruns pass, anything that could drag through ink does not."""
 
+import re
+from collections.abc import Callable
+from dataclasses import replace
+
 import pytest
 
 from gcode.check import check_text
 from gcode.check_height import bead_radius, crosses_ink, free_length
 from gcode.clearance import Laid
+from gcode.emit import emit
 from gcode.geometry import Straight
-from gcode.printer import Printer
+from gcode.plan import plan
+from gcode.printer import Printer, load_printer
 from gcode.trace import trace
+from skinfab.material import Material
+from skinfab.paths import Path
+from skinfab.pieces import Piece
 
 HEAD = "G28 X Y\nG90\nM83\nM302 P1\nG0 Z10 F300\nG0 X100 Y100 F6000\nG0 Z1.6 F300\n"
 LINE = "G1 X110 Y100 E40 F240\n"
@@ -51,3 +60,36 @@ def test_free_length_stops_before_ink() -> None:
     assert free_length((0.9, 0.0), (1.0, 0.0), 2.0, wall, 0.3, leaves=False) == 0.0
     assert not crosses_ink(Straight((1.0, 5.0), (1.0, 6.0)), wall, 0.3, leaves=True)
     assert crosses_ink(Straight((1.0, 5.0), (1.0, 4.0)), wall, 0.3, leaves=True)
+
+
+@pytest.mark.parametrize("name", ["ender5plus-vipro", "generic-marlin", "generic-grbl"])
+def test_a_travel_at_a_height_that_nobody_knows(
+    make_piece: Callable[..., Piece], make_sensor: Callable, hairpin: Path, material: Material, name: str
+) -> None:
+    printer = load_printer(name)
+    planned = plan(make_piece(120, 100), [make_sensor("C1", hairpin, 20, 20)], printer=printer, material=material)
+    text = emit(planned.program, printer)
+    assert check_text(text, printer) == ()
+    # Without the first lift, the head goes to the first pattern as low as it stands.
+    blind, count = re.subn(r"^G[01] Z10.0000 (F.*)\n", "", text, count=1, flags=re.MULTILINE)
+    assert count == 1
+    (fault,) = check_text(blind, printer)
+    assert "travels at an unknown height" in fault.what and fault.pattern == "C1"
+    assert fault.line == next(k for k, line in enumerate(blind.splitlines(), 1) if re.match("G[01] X", line))
+
+
+@pytest.mark.parametrize(
+    ("start", "home", "lines"),
+    [
+        ("G28 X Y\nG0 X100 Y100 F6000\nG0 Z10 F300", "xy", [2]),
+        ("G28 X Y\nG0 X100 Y100 Z10 F300", "xy", [2]),  # it rises on the way
+        ("G28 X Y\nG91\nG0 Z10 F300\nG90\nG0 X100 Y100 F6000\nG0 Z10 F300", "xy", [5]),  # ten above who knows what
+        ("G28\nG0 X100 Y100 F6000\nG0 Z10 F300", "xyz", [2]),
+        ("G28\nG1 Z5 F300\nG0 Z10\nG0 X100 Y100 F6000", "xyz", []),  # as slicers begin
+        ("G28\nG0 Z15 F300\nG28 X Y\nG0 X100 Y100 F6000", "xyz", []),
+    ],
+)
+def test_the_height_is_said_before_the_first_travel(start: str, home: str, lines: list[int], printer: Printer) -> None:
+    text = f"{start}\nG90\nM83\nM302 P1\nG0 Z1.6 F300\n{LINE}G0 Z10 F300"
+    faults = check_text(text, replace(printer, home=home))
+    assert [f.line for f in faults] == lines and all("unknown height" in f.what for f in faults)
