@@ -1,6 +1,6 @@
 """Lines of numbers parted by commas, as a small board prints them: read, and flagged, for nothing tells a wrong digit from a right one.
 
-A line of headings, sent now and then, names the channels; of these ``sequence`` and ``time_us``, ``time_ms`` or ``time_s``
+A line of headings, sent every second, names the channels; of these ``sequence`` and ``time_us``, ``time_ms`` or ``time_s``
 are the device's count and clock. Without headings the channels are called ch1, ch2, ..., lines are counted as they come,
 and the host's clock is the only one.
 """
@@ -18,8 +18,8 @@ from skinfab.readout.framing import Splitter
 
 #: The longest line: as many numbers as a stream may have channels, 15 characters each.
 LONGEST_LINE = 16_384
-#: So many lines alike, one behind the other, tell how many channels there are where no headings do.
-ALIKE = 3
+#: So many lines alike, one behind the other, tell how many channels there are where no headings came for so long.
+ALIKE, HEADINGS_S = 3, 1.5
 
 #: Digits, not all that Python takes for a number: 1_0 is two numbers whose comma was hurt.
 _NUMBER = re.compile(rb"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
@@ -49,6 +49,7 @@ class LineDecoder:
         self._first = True
         self._names: tuple[str, ...] = ()
         self._waiting: list[list[float]] = []
+        self._since: float | None = None
         self._lines = 0
         self._start: float | None = None
         self._wrong = 0
@@ -70,10 +71,11 @@ class LineDecoder:
         out = []
         for line in self._splitter.feed(data):
             # What comes first is the end of a line that had begun: cut off in the middle of a number, it would not show.
-            if self._first:
+            # Headings that begin with one of our own words are whole.
+            if self._first and not data.startswith(b"\n") and line.split(b",")[0].decode("latin-1") not in (_SEQUENCE, *_TIMES):
                 self._first = False
-                if not data.startswith(b"\n"):
-                    continue
+                continue
+            self._first = False
             out += self._line(line.strip(b"\r \t"), host_time)
         if b"\n" in data:
             self._first = False
@@ -121,8 +123,10 @@ class LineDecoder:
     def _guess(self, numbers: list[float], host_time: float) -> list[Frame]:
         if self._waiting and len(self._waiting[-1]) != len(numbers):
             self._waiting.clear()
-        self._waiting.append(numbers)
-        if len(self._waiting) < ALIKE:
+            self._since = None
+        self._since = host_time if self._since is None else self._since
+        self._waiting = [*self._waiting, numbers][-ALIKE:]
+        if len(self._waiting) < ALIKE or host_time - self._since < HEADINGS_S:
             return []
         self._take(tuple(f"ch{k + 1}" for k in range(len(numbers))))
         lines, self._waiting = self._waiting, []

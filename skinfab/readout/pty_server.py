@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import fcntl
 import os
 import select
@@ -21,13 +20,14 @@ from skinfab.readout.faults import Faults, Wire
 from skinfab.readout.frame import Frame, Stream
 from skinfab.readout.packets import FRAME_32, Layout
 
-#: How often the stream is described, s.
-DESCRIBE_S = 1.0
+#: How often the stream is described: every second, or where there is no rate, every so many frames.
+DESCRIBE_S, DESCRIBE_FRAMES = 1.0, 100
 #: Whoever opens a port first throws away what is in it: until that is done nothing is sent, s.
 SETTLE_S = 0.05
 #: What was sent last may take so long to be read before the port goes, s.
 _DRAIN_S = 2.0
 _POLL_S = 0.002
+_EMPTY_POLLS = 25
 
 
 class PtyServer:
@@ -149,7 +149,7 @@ class PtyServer:
                 self._plug_in()
                 described = -1.0
             now = time.monotonic()
-            if described < 0 or now - described >= DESCRIBE_S:
+            if described < 0 or now - described >= DESCRIBE_S or (not self._rate and k % DESCRIBE_FRAMES == 0):
                 described = now
                 yield self._description(), False
             yield self._packet(frame), True
@@ -194,10 +194,8 @@ class PtyServer:
 
     def _drain(self) -> None:
         """Bytes that nobody has read yet go with the port: leave some time for that."""
-        until = time.monotonic() + _DRAIN_S
-        while time.monotonic() < until and not self._stop.is_set():
-            with contextlib.suppress(OSError):
-                waiting = struct.unpack("i", fcntl.ioctl(self._other_end, termios.FIONREAD, b"\0" * 4))[0]
-                if not waiting:
-                    return
-            self._stop.wait(_POLL_S)
+        until, empty = time.monotonic() + _DRAIN_S, 0
+        # Between our end and theirs the kernel passes bytes on in its own time: once empty is not yet all read.
+        while time.monotonic() < until and empty < _EMPTY_POLLS and not self._stop.wait(_POLL_S):
+            waiting = struct.unpack("i", fcntl.ioctl(self._other_end, termios.FIONREAD, b"\0" * 4))[0]
+            empty = 0 if waiting else empty + 1

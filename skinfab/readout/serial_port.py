@@ -61,6 +61,7 @@ class SerialPort:
         self._described_s = described_s
         self._thread: threading.Thread | None = None
         self._news = threading.Condition()
+        self._hold = threading.Lock()  # while it is told to stop reading, the device must not be closed
         self._start_over()
 
     def _start_over(self) -> None:
@@ -127,14 +128,12 @@ class SerialPort:
         if self._thread is None:
             return
         self._closing.set()
-        device = self._device
-        if device.is_open:
-            device.cancel_read()
+        with self._hold:
+            if self._device.is_open:
+                self._device.cancel_read()
         self._thread.join()
         self._thread = None
-        device = self._device
-        if device.is_open:
-            device.close()
+        self._device.close()
         with self._news:
             self._waiting.clear()
             self._news.notify_all()
@@ -209,7 +208,8 @@ class SerialPort:
 
     def _find_again(self) -> bool:
         """Wait for the port that is gone; False where it is to be closed."""
-        self._device.close()
+        with self._hold:
+            self._device.close()
         with self._news:
             self._decoder.reset()
             self._order.reopened()
