@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from gcode.trace import Finding, Trace
-from gcode.words import Command
+from gcode.words import SETTING, Command
 
 #: Words that GRBL takes on a three-axis machine; any other is an error, at which a sender stops.
-WORDS = {"G0": "XYZF", "G1": "XYZF", "G2": "XYZFIJKR", "G3": "XYZFIJKR", "G4": "P", "M3": "S", "M4": "S", "M5": "S"}
+WORDS = {"G0": "XYZFS", "G1": "XYZFS", "G2": "XYZFSIJKR", "G3": "XYZFSIJKR", "G4": "P", "M3": "S", "M4": "S", "M5": "S", SETTING: "FS"}
 
 #: Commands it knows besides those: modes, offsets, stored places, probing, and the end (gnea/grbl, "Grbl v1.1 Commands").
 KNOWN = frozenset(

@@ -13,7 +13,7 @@ from typing import TypeAlias
 
 from gcode.geometry import Curve, Point, Shape, Straight
 from gcode.printer import Spindle
-from gcode.words import Command, read_commands
+from gcode.words import MODAL, SETTING, Command, read_commands
 from skinfab.errors import InputError
 
 Place: TypeAlias = tuple[float | None, float | None, float | None]  # machine x, y, z in mm; None where nobody knows
@@ -127,7 +127,8 @@ def trace_as_far(text: str, *, spindle: Spindle | None = None) -> tuple[Trace, I
     """As `trace`, up to the line that cannot be read or followed, and what is wrong with it."""
     head, commands, fault = _Head(spindle), [], None
     try:
-        for command in read_commands(text):
+        for told in read_commands(text):
+            command = head.continued(told)
             head.follow(command)
             commands.append(command)
     except InputError as stopped:
@@ -153,6 +154,8 @@ class _Head:
         self.spindle = spindle
         self.flow = 0.0  # of that spindle, mm^3/s, backward negative
         self.spindle_s = 0.0  # the last S
+        self.turn = "M5"  # which way it turns
+        self.motion = "G0" if spindle else ""  # what a line without a G goes on with; GRBL starts with G0
         self.moves: list[Move] = []
         self.faults: list[Finding] = []
         self.place: list[float | None] = [None, None, None]  # of the machine, mm
@@ -165,14 +168,36 @@ class _Head:
         self.undone: Command | None = None  # a G90 that has undone an M83
         self.pattern = ""
 
+    def continued(self, command: Command) -> Command:
+        """A line of places alone as the motion it goes on with (RS-274/NGC, modal group 1)."""
+        if command.code not in (MODAL, SETTING):
+            return command
+        if not self.spindle:
+            # What the writer meant is judged, once this is said.
+            self._fault(
+                command,
+                "it has no G before its words, and Marlin passes it over unless it was built with GCODE_MOTION_MODES",
+                "write the G of its motion before it",
+            )
+        elif command.code == MODAL and not self.motion:
+            raise InputError(f"line {command.line}: there is no motion to go on with; begin with G0, G1, G2 or G3")
+        return replace(command, code=self.motion) if command.code == MODAL and self.motion else command
+
     def follow(self, command: Command) -> None:
         if command.comment.startswith("pattern ") and not command.code:
             self.pattern = command.comment.removeprefix("pattern ").strip()
         if command.code and command.size > LINE_BYTES:
             self._fault(command, f"it is {command.size} bytes long, Marlin cuts at {LINE_BYTES}", "shorten its numbers or its comment")
         code = command.code
+        if self.spindle and "S" in command.words and code in ("G0", "G1", "G2", "G3", SETTING):
+            self._turn_pump(command, self.spindle)
         if code in ("G0", "G1", "G2", "G3"):
+            self.motion = code
             self._move(command)
+        elif code == SETTING:
+            self._feed(command)
+        elif code == "G80" or code.startswith("G38"):
+            self.motion = ""
         elif code in ("G20", "G21"):
             self.scale = MM_PER_INCH if code == "G20" else 1.0
         elif code in ("G90", "G91"):
@@ -221,11 +246,14 @@ class _Head:
                 end[k] = value * self.scale + self.shift[k]
         return end
 
-    def _move(self, command: Command) -> None:
+    def _feed(self, command: Command) -> None:
         if (feed := self._number(command, "F")) is not None:
             if feed <= 0:
                 raise InputError(f"line {command.line}: F is {feed:g}; a speed must be positive")
             self.speed = feed * self.scale / 60
+
+    def _move(self, command: Command) -> None:
+        self._feed(command)
         end = self._target(command)
         e = self._ink(command)
         centre = self._centre(command, end) if command.code in ("G2", "G3") else None
@@ -239,7 +267,8 @@ class _Head:
         self.spindle_s = self.spindle_s if (s := self._number(command, "S")) is None else s
         if self.spindle_s < 0 or self.spindle_s > spindle.s_max:
             self._fault(command, f"S{self.spindle_s:g} is not within 0 and the spindle's {spindle.s_max:g}", "lower the flow, or raise $30")
-        sign = {"M3": 1.0, "M4": -1.0}.get(command.code, 0.0)
+        self.turn = command.code if command.code.startswith("M") else self.turn
+        sign = {"M3": 1.0, "M4": -1.0}.get(self.turn, 0.0)
         self.flow = sign * self.spindle_s / spindle.s_per_flow
 
     def _pump_at_rest(self, command: Command) -> None:

@@ -23,6 +23,9 @@ MOTORS_OFF = frozenset({"M18", "M84"})
 #: Commands whose words are read; any other line (messages, fans) is passed over as it stands.
 READ = HEATERS | SETTINGS | MOTORS_OFF | {"G0", "G1", "G2", "G3", "G4", "G5", "G20", "G21", "G28", "G90", "G91", "G92"}
 READ |= {"M3", "M4", "M5", "M82", "M83", "M206", "M218", "M220", "M221", "M280", "M302", "M401", "M900"}
+#: Codes of lines without a G, M or T: one that goes on with the last motion, and one that sets F or S and moves nothing.
+MODAL, SETTING = "X", "F"
+
 _FLAGS = MOTORS_OFF | {"G28"}
 _TAKE_T = HEATERS | SETTINGS | {"M206", "M218", "M221", "M900"}
 
@@ -30,6 +33,7 @@ _TAKE_T = HEATERS | SETTINGS | {"M206", "M218", "M221", "M900"}
 LINE_LIMIT, FILE_LIMIT = 4096, 256 * 2**20
 
 _COMMAND = re.compile(r"(?:[Nn]\d{1,9}\s*)?([GMT])\s*(\d{1,5})(\.\d{1,3})?(?![\d.])", re.IGNORECASE)
+_BARE = re.compile(r"(?:N\d{1,9}\s*)?(?=[EFIJKRSXYZ]\s*[-+.\d])", re.IGNORECASE)
 _WORD = re.compile(r"\s*([A-Z])\s*([-+]?(?:\d+\.?\d*|\.\d+))?", re.IGNORECASE)
 
 #: Words as nearly every line has them, so short that each number is finite.
@@ -92,7 +96,7 @@ def _example_in(folder: Path) -> str:
 
 
 def read_commands(text: str) -> Iterator[Command]:
-    """The commands and comments of a text, in order; a line of comment alone has the code "".
+    """The commands and comments of a text, in order; a line of comment alone has the code "", one of words alone `MODAL` or `SETTING`.
 
     Raises
     ------
@@ -116,6 +120,11 @@ def read_commands(text: str) -> Iterator[Command]:
                 yield Command(line, "", {}, comment.strip(), len(raw if raw.isascii() else raw.encode()))
             continue
         found = _COMMAND.match(body)
+        if not found and (bare := _BARE.match(body)):
+            words = _words(body[bare.end() :], line, MODAL)
+            code = SETTING if words.keys() <= {"F", "S"} else MODAL
+            yield Command(line, code, words, comment.strip(), len(raw if raw.isascii() else raw.encode()))
+            continue
         if not found:
             known = (
                 "what begins with $ is told to GRBL before, not in a file"

@@ -19,6 +19,14 @@ def test_the_sound_file_is_sound() -> None:
     assert not found("", after="M0\nM2\n", before="G54\nG17\nG94\nM0\n")
 
 
+def test_a_foreign_file_of_modal_lines_is_judged_as_its_long_form() -> None:
+    modal = "G21\nG90\nF300\nG1 Z10\nX50 Y50\nZ1.6\nS242\nM3\nX60\nY{0}\nM5\nZ10\n"
+    spelt = "G21\nG90\nG1 Z10 F300\nG1 Z10\nG1 X50 Y50\nG1 Z1.6\nM5\nM3 S242\nG1 X60\nG1 Y{0}\nM5\nG1 Z10\n"
+    grbl = load_printer("generic-grbl")
+    assert not check_text(modal.format(60), grbl)
+    assert check_text(modal.format(900), grbl) == check_text(spelt.format(900), grbl) != ()
+
+
 @pytest.mark.parametrize(
     ("line", "says"),
     [

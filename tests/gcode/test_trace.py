@@ -7,6 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gcode.geometry import Curve
+from gcode.printer import load_printer
 from gcode.trace import Finding, Move, homed_axes, trace
 from skinfab.errors import InputError
 
@@ -132,3 +133,35 @@ def test_hostile_text_gives_moves_or_one_sentence(text: list[str]) -> None:
         assert "\n" not in said and said.startswith("line ")
     else:
         assert all(math.isfinite(v) for m in t.moves for v in (*m.end, m.e) if v is not None)
+
+
+SPINDLE = load_printer("generic-grbl").spindle
+
+
+def test_grbl_goes_on_with_the_last_motion() -> None:
+    t = trace("X1 Y2 Z3 F60\nG1 X5\nY4 F120\nF600\nX0\nG3 X2 Y4 I1 J0\nX4 I1 J0\nG4 P1\nG28.1\nX6 I1 J0", spindle=SPINDLE)
+    assert [c.code for c in t.commands] == ["G0", "G1", "G1", "F", "G1", "G3", "G3", "G4", "G28.1", "G3"]
+    assert [m.end for m in t.moves[:4]] == [(1.0, 2.0, 3.0), (5.0, 2.0, 3.0), (5.0, 4.0, 3.0), (0.0, 4.0, 3.0)]
+    assert [m.speed for m in t.moves] == [1.0, 1.0, 2.0, 10.0, 10.0, 10.0, 10.0]
+    assert [m.centre for m in t.moves[4:]] == [(1.0, 4.0), (3.0, 4.0), (5.0, 4.0)] and not t.faults
+
+
+def test_grbl_takes_s_on_any_line() -> None:
+    spelt = trace("G1 X0 Y0 F60\nM3 S100\nG1 X2\nM3 S200\nG1 X4\nM4 S200\nG1 X6\nM5\nG1 X8", spindle=SPINDLE).moves
+    short = trace("G1 X0 Y0 F60\nS100\nM3\nX2\nS200\nX4\nM4\nX6\nM5\nX8 S300", spindle=SPINDLE).moves
+    assert [m.e for m in short] == [m.e for m in spelt] == [0.0, 2.0, 4.0, -4.0, 0.0]
+    faults = trace("G1 X0 Y0 F60\nM3\nG1 X2 S2000", spindle=SPINDLE).faults
+    assert [f.what for f in faults] == ["S2000 is not within 0 and the spindle's 1000"]
+
+
+@pytest.mark.parametrize("cancels", ["G80", "G38.2 Z-5"])
+def test_no_motion_to_go_on_with(cancels: str) -> None:
+    with pytest.raises(InputError, match="line 3: there is no motion to go on with"):
+        trace(f"G1 X0 Y0 F60\n{cancels}\nX5", spindle=SPINDLE)
+
+
+def test_marlin_is_said_to_pass_a_line_of_words_over() -> None:
+    t = trace(START + "G1 X1\nX2 E1\nF300\nX3")
+    assert [(f.line, "passes it over" in f.what) for f in t.faults] == [(7, True), (8, True), (9, True)]
+    assert [m.end[0] for m in t.moves] == [0.0, 1.0, 2.0, 3.0] and t.moves[-1].speed == 5.0
+    assert [f.line for f in trace("X2 Y2\nG0 X1 F60").faults] == [1]

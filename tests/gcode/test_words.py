@@ -22,6 +22,10 @@ from skinfab.errors import InputError
         ("M104 T0 S200", "M104", {"T": 0.0, "S": 200.0}),
         ("M302P1", "M302", {"P": 1.0}),
         ("G38.2 Z-5", "G38.2", {}),
+        ("X10 Y5", "X", {"X": 10.0, "Y": 5.0}),
+        ("n7 y-.5F300", "X", {"Y": -0.5, "F": 300.0}),
+        ("F1000", "F", {"F": 1000.0}),
+        ("S500", "F", {"S": 500.0}),
         ("G1 X1e5", "G1", {"X": 1.0, "E": 5.0}),  # as Marlin reads it: E is an axis, never an exponent
     ],
 )
@@ -44,7 +48,9 @@ def test_lines_count_over_any_line_end_and_comments_stay() -> None:
         ("G1 X" + 400 * "9", "line 1: X is not a finite number"),
         ("G1 X1 X2", "line 1: a second X"),
         ("G1 X1 G1 Y2", "line 1: a second G"),
-        ("X10 Y10", "line 1: cannot read 'X10 Y10'"),
+        ("X10 Y10 hello", "line 1: cannot read 'hello'"),
+        ("X10 G1", "line 1: a second G"),
+        ("P500", "line 1: cannot read 'P500'"),
         ("hello", "line 1: cannot read 'hello'"),
         ("G1 X" + LINE_LIMIT * "1", "line 1 is .* characters long"),
         ("G999999 X1", "line 1: cannot read"),
