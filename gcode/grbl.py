@@ -25,9 +25,11 @@ from skinfab.tolerances import SPINDLE_FRACTION
 S_DIGITS, F_DECIMALS = 7, 3
 
 REASONS = (
-    "; GRBL: $32=0 (spindle mode) and $30 as the profile's s_max; the spindle's output drives the pump, M4 turns it back.",
+    "; GRBL: $32=0 (spindle mode) and $30 as the profile's s_max;",
+    "; the spindle's output drives the pump, M4 turns it back.",
     "; home with $H before the mould lies on the bed; then G10 L20 P1 sets X, Y at the bed's corner",
-    "; and Z over the glass, as the report says. Nothing here moves Z to find a zero in the wet mould.",
+    "; and Z over the glass, as the report says.",
+    "; Nothing here moves Z to find a zero in the wet mould.",
 )
 
 PREAMBLE = (

@@ -168,7 +168,7 @@ TAIL = "M5\nG1 Z10 F300\nM2\n"
         ("M3 S242\nG3 X60 Y50 I5.2 J0 F300\n", "off the circle"),
         (
             "M3 S100\nG4 P0.5\nM5\nM3 S242\nG1 X60 F300\nM5\nM4 S100\nG4 P0.5\nM5\nM3 S100\nG4 P0.3\nM3 S242\nG1 X70 F300\n",
-            "mm^3 of ink less",
+            "holds 0.2 mm^3 less",
         ),
     ],
 )

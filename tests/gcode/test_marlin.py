@@ -6,13 +6,14 @@ import re
 from dataclasses import replace
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gcode.emit import emit, with_chords
 from gcode.geometry import Straight
 from gcode.plan import Plan
-from gcode.printer import Printer
+from gcode.printer import Printer, load_printer
+from gcode.profile import bundled_printers
 from gcode.program import Clean, Comment, Dwell, Extrude, Program, Travel, quantised
 from skinfab import __version__
 from skinfab.tolerances import ARC_RADIUS_MM
@@ -83,10 +84,17 @@ def test_numbers_are_plain_with_fixed_decimals(text: str) -> None:
     assert "G02" not in text and "G03" not in text and "G01" not in text
 
 
+@pytest.mark.parametrize("home", ["xyz", "xy", "none"])
+@pytest.mark.parametrize("name", bundled_printers())
 @given(data=st.data())
-def test_lines_are_short_and_ascii(any_program: st.SearchStrategy[Program], data: st.DataObject, printer: Printer) -> None:
-    program = data.draw(any_program)
-    text = emit(Program(data.draw(st.text()), (*program.steps, Comment(data.draw(st.text())))), replace(printer, name=200 * "é"))
+@settings(max_examples=30, deadline=None)
+def test_lines_are_short_and_ascii_on_every_dialect(
+    any_program: st.SearchStrategy[Program], data: st.DataObject, name: str, home: str
+) -> None:
+    program, printer = data.draw(any_program), replace(load_printer(name), name=200 * "é", home=home)
+    around = (Comment(data.draw(st.text())), Comment(300 * "x"), Clean(12345.678), Dwell(0.001))
+    text = emit(Program(data.draw(st.text()), (*program.steps, *around)), printer)
+    assert "home" in text
     assert all(len(line) <= 96 for line in text.encode("ascii").split(b"\n"))
 
 
