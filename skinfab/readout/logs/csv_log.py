@@ -7,6 +7,7 @@ each channel: ``.`` for a plain value, ``s`` saturated, ``x`` not valid, ``b`` b
 from __future__ import annotations
 
 import csv
+import io
 import math
 import re
 import struct
@@ -19,7 +20,7 @@ from numpy.typing import NDArray
 from skinfab.errors import InputError
 from skinfab.files import atomic_path
 from skinfab.readout.description import stream_of_json, stream_to_json
-from skinfab.readout.frame import Recording, Stream
+from skinfab.readout.frame import Frame, Recording, Stream
 
 #: How our own files begin.
 MARK = "# skinfab recording: 1"
@@ -37,19 +38,50 @@ def write_csv(recording: Recording, path: str | Path) -> None:
     """
     stream = recording.stream
     states = np.array(list(_STATES))[recording.saturated + 2 * ~recording.valid]
+    try:
+        head = csv_head(stream)
+    except InputError as fault:
+        raise InputError(f"{path}: {fault}") from fault
     with atomic_path(path) as partial, partial.open("w", encoding="utf-8", newline="") as file:
-        file.write(f"{MARK}\n# simulated: {'true' if stream.simulated else 'false'}\n# stream: {stream_to_json(stream)}\n")
+        file.write(head)
         rows = csv.writer(file, lineterminator="\n")
-        # A bare carriage return is not quoted of itself, and would be read as the end of the line.
-        all_quoted = any("\r" in name for name in stream.names)
-        quoted = csv.writer(file, lineterminator="\n", quoting=csv.QUOTE_ALL if all_quoted else csv.QUOTE_MINIMAL)
-        try:
-            quoted.writerow([*_BEFORE, *stream.names, *_AFTER])
-        except (UnicodeEncodeError, csv.Error) as fault:
-            raise InputError(f"{path}: a channel's name cannot be written ({fault}); rename it") from fault
         columns = (recording.device_time.tolist(), recording.host_time.tolist(), recording.sequence.tolist(), recording.values.tolist())
         for device, host, sequence, values, state in zip(*columns, states.tolist(), strict=True):
             rows.writerow([*map(_cell, (device, host)), sequence, *map(_cell, values), "".join(state)])
+
+
+def csv_head(stream: Stream) -> str:
+    """The remarks and headings that a recording of this stream begins with.
+
+    Raises
+    ------
+    InputError
+        A channel's name is no text that a file can hold.
+    """
+    text = io.StringIO()
+    text.write(f"{MARK}\n# simulated: {'true' if stream.simulated else 'false'}\n# stream: {stream_to_json(stream)}\n")
+    # A bare carriage return is not quoted of itself, and would be read as the end of the line.
+    all_quoted = any("\r" in name for name in stream.names)
+    quoted = csv.writer(text, lineterminator="\n", quoting=csv.QUOTE_ALL if all_quoted else csv.QUOTE_MINIMAL)
+    try:
+        quoted.writerow([*_BEFORE, *stream.names, *_AFTER])
+        text.getvalue().encode()
+    except (UnicodeEncodeError, csv.Error) as fault:
+        raise InputError(f"a channel's name cannot be written ({fault}); rename it") from fault
+    return text.getvalue()
+
+
+def csv_line(frame: Frame) -> str:
+    """The line of one frame, as `write_csv` writes it.
+
+    Examples
+    --------
+    >>> csv_line(Frame(0.01, 5.0, 7, np.array([0.5, np.nan]), np.array([True, False]), np.array([False, False])))
+    '0.01,5.0,7,0.5,nan,.x\\n'
+    """
+    state = "".join(_STATES[s + 2 * (not v)] for s, v in zip(frame.saturated.tolist(), frame.valid.tolist(), strict=True))
+    cells = [_cell(frame.device_time), _cell(frame.host_time), str(frame.sequence), *map(_cell, frame.values.tolist()), state]
+    return ",".join(cells) + "\n"
 
 
 def _cell(number: float) -> str:
