@@ -150,7 +150,7 @@ def calibrate(log: Prepared, *, model: str = "auto", degree: int | None = None) 
         n=len(angle),
         sse=sse,
         r2=1 - sse / float(np.sum((signal - signal.mean()) ** 2)),
-        rms_deg=_rms(_errors(fitted, log.runs)),
+        rms_deg=_rms(angle_errors(fitted, log.runs)),
         scores=scores,
         sensitivity_per_deg=(float(slopes.min()), float(slopes.mean()), float(slopes.max())),
         monotone_range_deg=(low, high),
@@ -162,7 +162,7 @@ def calibrate(log: Prepared, *, model: str = "auto", degree: int | None = None) 
 def rms_on(log: Prepared, found: Calibration, other: Prepared) -> dict[str, float]:
     """Error (deg) on another log of every model of a calibration, fitted to the whole of `log`."""
     fitted = {name: MODELS[name].fit(log.runs, degree=score.degree) for name, score in found.scores.items()}
-    return {name: _rms(_errors(model, other.runs)) for name, model in fitted.items()}
+    return {name: _rms(angle_errors(model, other.runs)) for name, model in fitted.items()}
 
 
 @dataclass(frozen=True, eq=False)
@@ -185,7 +185,7 @@ def _trial(log: Prepared, name: str, degree: int) -> Trial:
     for part in parts:
         model = MODELS[name].fit(log.only([k for k in log.labels if k not in part]), degree=degree)
         for k in part:
-            errors = _errors(model, log.only([k]))
+            errors = angle_errors(model, log.only([k]))
             squares.append(float(np.mean(errors**2)))
             sizes.append(len(errors))
     return Trial(np.array(squares), np.array(sizes, dtype=float))
@@ -206,10 +206,10 @@ def _simplest(tried: Mapping[Name, Trial]) -> Name:
 
 def _score(model: Model, held_out: Sequence[Samples], degree: int) -> Score:
     outside = np.concatenate([model.estimate(run.time, run.signal)[1][run.fit] for run in held_out])
-    return Score(_rms(_errors(model, held_out)), float(outside.mean()), _step_us(model, held_out[0]), degree)
+    return Score(_rms(angle_errors(model, held_out)), float(outside.mean()), step_us(model, held_out[0]), degree)
 
 
-def _step_us(model: Model, run: Samples) -> float:
+def step_us(model: Model, run: Samples) -> float:
     """The median of single steps, us."""
     tracker, clock = model.tracker(), time.perf_counter
     taken = []
@@ -220,7 +220,7 @@ def _step_us(model: Model, run: Samples) -> float:
     return float(np.median(taken)) * 1e6
 
 
-def _errors(model: Model, runs: Sequence[Samples]) -> FloatArray:
+def angle_errors(model: Model, runs: Sequence[Samples]) -> FloatArray:
     """Estimated less true angle of the samples that count, deg."""
     return np.concatenate([(model.estimate(run.time, run.signal)[0] - run.angle)[run.fit] for run in runs])
 

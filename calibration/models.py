@@ -314,9 +314,9 @@ class _LagTracker:
         return self.bases[k - 1] + part * (self.bases[k] - self.bases[k - 1])
 
 
-#: By name, the simplest first.
+#: By name, the simplest first; lag last, for what it learns of one speed is wrong at another.
 MODELS: dict[str, type[CurveModel] | type[BranchModel] | type[LagModel] | type[PlayModel]] = {
-    each.name: each for each in (CurveModel, BranchModel, LagModel, PlayModel)
+    each.name: each for each in (CurveModel, BranchModel, PlayModel, LagModel)
 }
 
 

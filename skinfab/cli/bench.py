@@ -14,10 +14,16 @@ NAMES = {
     "flatten": "time against distortion of the ways to flatten a disk",
     "simplify": "triangles solved for against distortion and time",
     "gcode": "arcs and chord tolerances against file size, deviation and time",
+    "calibrate": "models and degrees of a strain calibration against held-out error and time",
 }
 
 #: Where its `run` is, and whether it takes --sizes.
-MODULES = {"flatten": ("skinfab.bench.flatten", True), "simplify": ("skinfab.bench.simplify", True), "gcode": ("gcode.bench", False)}
+MODULES = {
+    "flatten": ("skinfab.bench.flatten", True),
+    "simplify": ("skinfab.bench.simplify", True),
+    "gcode": ("gcode.bench", False),
+    "calibrate": ("calibration.bench", False),
+}
 
 
 def name(text: str) -> str:

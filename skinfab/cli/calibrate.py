@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from skinfab.readout.table import Table
 
 #: Must be the names of `calibration.models.MODELS`, which is not imported for a help text.
-NAMES = ("auto", "poly", "branches", "lag", "play")
+NAMES = ("auto", "poly", "branches", "play", "lag")
 
 
 def degree(text: str) -> int | None:
