@@ -30,7 +30,10 @@ COMMANDS = {
     "mould": "casting moulds for the flat pieces",
     "gcode": "G-code for the sensors, or check a G-code file",
     "strips": "calibration strips for the ink: print them, then fit what was measured",
+    "record": "record the frames of a port",
     "calibrate": "fit a strain sensor to joint angles",
+    "replay": "a recorded log through the same code as live data",
+    "contact": "find contacts in the readings of a skin",
     "bench": "measure the project beside its peers: time against distortion",
 }
 
