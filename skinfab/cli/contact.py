@@ -1,0 +1,273 @@
+"""`skinfab contact LOG... -o DIR`, `skinfab contact simulator -o DIR`: when each sensor of a skin is touched."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from skinfab.cli import steps
+
+if TYPE_CHECKING:
+    from calibration.contact import Contact, Detection
+    from calibration.contact_score import Score
+    from calibration.contact_table import Row
+    from skinfab.readout.frame import Recording
+
+SIMULATOR = "simulator"
+#: Must be the names of `calibration.contact_objects.OBJECTS`, which is not imported for a help text.
+OBJECTS = ("cube", "cylinder", "dodecahedron", "grip", "cup")
+
+
+@dataclass(frozen=True, eq=False)
+class Trial:
+    """A recording, what was found in it, and what is true where it was simulated."""
+
+    name: str
+    sha256: str
+    recording: Recording
+    found: Detection
+    truth: tuple[Contact, ...] = ()
+
+
+def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add the command and its options."""
+    p = subparsers.add_parser(
+        "contact",
+        help="find contacts in the readings of a skin",
+        description="Find when each contact sensor is touched, by its signed change against its own noise, at a stated rate of false "
+        "alarms; and what each reads at rest and touched, over trials. Logs begin at rest, for 3 seconds.",
+    )
+    p.add_argument(
+        "logs",
+        metavar="LOG",
+        nargs="+",
+        help=f"logs of one object, each a trial (CSV, MCAP, ROS bag, recording); or {SIMULATOR}: a simulated hand on the paper's objects",
+    )
+    p.add_argument(
+        "--false-alarms",
+        metavar="PER_MINUTE",
+        type=steps.positive,
+        default=0.1,
+        help="to be expected, all channels together (default: 0.1)",
+    )
+    p.add_argument(
+        "--channel",
+        metavar="NAME",
+        action="append",
+        help="watch this channel; may be given again (default: contact sensors, or all there are)",
+    )
+    p.add_argument("--object", choices=(*OBJECTS, "all"), help=f"of the {SIMULATOR} (default: all)")
+    p.add_argument("--trials", metavar="N", type=steps.seed, help=f"of the {SIMULATOR}, per object (default: 5)")
+    p.add_argument("--seed", type=steps.seed, help=f"of the {SIMULATOR} (default: 0)")
+    p.add_argument("-o", "--output", metavar="DIR", type=Path, required=True, help="folder for events, table, result and figure")
+    p.add_argument("--json", action="store_true", help="print the result as one JSON object and nothing else")
+    p.set_defaults(run=run, wrong_usage=p.error)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Find contacts, write them down, and say what was found."""
+    if SIMULATOR in args.logs:
+        if len(args.logs) > 1:
+            args.wrong_usage(f"{SIMULATOR} stands alone: it is no log among others")
+        if args.channel:
+            args.wrong_usage(f"--channel is for logs; the {SIMULATOR}'s channels are all contact sensors")
+        if args.trials == 0:
+            args.wrong_usage("--trials 0 is no trial")
+        sessions, notes, scores = _simulated(args)
+    else:
+        if given := next((f"--{name}" for name in ("object", "trials", "seed") if getattr(args, name) is not None), None):
+            args.wrong_usage(f"{given} is for the {SIMULATOR}, not for logs")
+        sessions, notes = _logged(args)
+        scores = {}
+    from calibration.contact_table import contact_table
+
+    tables = {name: contact_table([(each.recording, each.found) for each in trials]) for name, trials in sessions.items()}
+    for trials in sessions.values():
+        for each in trials:
+            notes += [f"{each.name}: {fault}" for health in each.found.channels if (fault := health.fault) and not scores]
+    result = _facts(args, sessions, tables, scores, notes)
+    _write(args.output, sessions, tables, result)
+    if args.json:
+        print(json.dumps(result, allow_nan=False))
+        return 0
+    steps.say(notes)
+    for line in _lines(sessions, tables, result):
+        print(line)
+    print(f"{args.output}: contact.png, events.csv, result.json, table.csv" + (", truth.csv" if scores else ""))
+    return 0
+
+
+def _logged(args: argparse.Namespace) -> tuple[dict[str, list[Trial]], list[str]]:
+    from calibration.contact import detect
+    from skinfab.errors import InputError
+    from skinfab.progress import terminal_progress
+    from skinfab.readout.logs.log import read_log
+
+    trials, notes = [], []
+    with terminal_progress(quiet=args.json) as progress:
+        for k, path in enumerate(args.logs):
+            progress(k / len(args.logs), Path(path).name)
+            log = read_log(path)
+            notes += list(log.notes)
+            try:
+                found = detect(log.recording, false_alarms=args.false_alarms, channels=args.channel)
+            except InputError as fault:
+                raise InputError(f"{path}: {fault}") from fault
+            trials.append(Trial(log.file, log.sha256, log.recording, found))
+        progress(1.0, "done")
+    return {trials[0].recording.stream.name or trials[0].name: trials}, notes
+
+
+def _simulated(args: argparse.Namespace) -> tuple[dict[str, list[Trial]], list[str], dict[str, dict[str, list[Score]]]]:
+    from calibration.contact import detect
+    from calibration.contact_simulator import simulate
+    from calibration.contact_study import judge
+    from skinfab.progress import terminal_progress
+
+    names = OBJECTS if args.object in (None, "all") else (args.object,)
+    count, seed = args.trials or 5, args.seed or 0
+    sessions: dict[str, list[Trial]] = {}
+    scores: dict[str, dict[str, list[Score]]] = {}
+    with terminal_progress(quiet=args.json) as progress:
+        for k, name in enumerate(names):
+            progress(k / len(names), name)
+            made = [simulate(name, seed=seed + j) for j in range(count)]
+            sessions[name] = [
+                Trial(f"{name}-{seed + j}", "", each.recording, detect(each.recording, false_alarms=args.false_alarms), each.truth)
+                for j, each in enumerate(made)
+            ]
+            scores[name] = judge(made, false_alarms=args.false_alarms)
+        progress(1.0, "done")
+    return sessions, [], scores
+
+
+def _facts(
+    args: argparse.Namespace,
+    sessions: dict[str, list[Trial]],
+    tables: dict[str, tuple[Row, ...]],
+    scores: dict[str, dict[str, list[Score]]],
+    notes: Sequence[str],
+) -> dict[str, Any]:
+    """The result, ready for JSON."""
+    from calibration.contact_study import figures
+
+    facts: dict[str, Any] = {"false_alarms_per_minute": args.false_alarms, "objects": {}, "notes": list(notes)}
+    for name, trials in sessions.items():
+        first = trials[0].found
+        facts["objects"][name] = {
+            "simulated": any(each.recording.stream.simulated for each in trials),
+            "threshold_sigma": first.alarm.threshold,
+            "cap_sigma": first.alarm.cap,
+            "trials": [
+                {
+                    "log": each.name,
+                    "sha256": each.sha256 or None,
+                    "frames": len(each.recording),
+                    "contacts": len(each.found.contacts),
+                    "channels": [asdict(health) | {"fault": health.fault} for health in each.found.channels],
+                }
+                for each in trials
+            ],
+            "table": [asdict(row) for row in tables[name]],
+        }
+    if scores:
+        together: dict[str, list[Score]] = {}
+        for each_object in scores.values():
+            for detector, of in each_object.items():
+                together.setdefault(detector, []).extend(of)
+        facts["evaluation"] = {
+            name: {detector: asdict(figures(of)) for detector, of in each.items()} for name, each in (scores | {"all": together}).items()
+        }
+    out: dict[str, Any] = _finite(facts)
+    return out
+
+
+def _finite(value: Any) -> Any:
+    """JSON has no NaN: what is not known is null."""
+    if isinstance(value, dict):
+        return {key: _finite(each) for key, each in value.items()}
+    if isinstance(value, list | tuple):
+        return [_finite(each) for each in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def _write(folder: Path, sessions: dict[str, list[Trial]], tables: dict[str, tuple[Row, ...]], result: dict[str, Any]) -> None:
+    from calibration.contact_figure import Panel, draw_contacts
+    from skinfab.files import atomic_write
+
+    folder.mkdir(parents=True, exist_ok=True)
+    simulated = any(each["simulated"] for each in result["objects"].values())
+    everything = [(name, each) for name, trials in sessions.items() for each in trials]
+    head = ["object", "log", "channel", "start_s", "end_s", "sign", "strength", "saturated", "dropped"]
+    rows = [(name, each.name, c) for name, each in everything for c in each.found.contacts]
+    atomic_write(folder / "events.csv", _csv(head, [_event(*row) for row in rows], simulated))
+    if simulated and any(each.truth for _, each in everything):
+        true = [_event(name, each.name, c) for name, each in everything for c in each.truth]
+        atomic_write(folder / "truth.csv", _csv(head, true, simulated))
+    atomic_write(folder / "table.csv", _csv(*_table(tables), simulated))
+    atomic_write(folder / "result.json", json.dumps(result, indent=1, allow_nan=False) + "\n")
+    # The first trial of each object; of a single object its first trials.
+    panels = everything if len(sessions) == 1 else [(name, trials[0]) for name, trials in sessions.items()]
+    draw_contacts([Panel(each.name, each.recording, each.found, each.truth) for _, each in panels], folder / "contact.png")
+
+
+def _event(name: str, log: str, c: Contact) -> list[str]:
+    end = "" if c.lasting else f"{c.end:.3f}"
+    return [name, log, c.channel, f"{c.start:.3f}", end, str(c.sign), f"{c.strength:.4g}", str(int(c.saturated)), str(int(c.dropped))]
+
+
+def _table(tables: dict[str, tuple[Row, ...]]) -> tuple[list[str], list[list[str]]]:
+    head = ["object", "channel", "unit", "r0", "touched", "scatter", "change", "change_scatter", "contacts", "trials"]
+    rows = [
+        [
+            name,
+            row.channel,
+            row.unit,
+            *("" if math.isnan(x) else f"{x:.6g}" for x in (row.r0, row.touched, row.scatter, row.change, row.change_scatter)),
+            str(row.contacts),
+            str(row.trials),
+        ]
+        for name, table in tables.items()
+        for row in table
+    ]
+    return head, rows
+
+
+def _csv(head: list[str], rows: Sequence[list[str]], simulated: bool) -> str:
+    import csv
+    import io
+
+    text = io.StringIO()
+    if simulated:
+        text.write("# simulated: true\n")
+    csv.writer(text, lineterminator="\n").writerows([head, *rows])
+    return text.getvalue()
+
+
+def _lines(sessions: dict[str, list[Trial]], tables: dict[str, tuple[Row, ...]], result: dict[str, Any]) -> list[str]:
+    lines = []
+    for name, trials in sessions.items():
+        contacts = sum(len(each.found.contacts) for each in trials)
+        made = " (simulated)" if result["objects"][name]["simulated"] else ""
+        lines.append(f"{name}{made}: {contacts} contacts in {len(trials)} {'trial' if len(trials) == 1 else 'trials'}")
+        lines.append("  channel      at rest  at stable contact        change  contacts")
+        for row in tables[name]:
+            spread = "" if math.isnan(row.scatter) else f" +- {row.scatter:.4g}"
+            change = "-" if math.isnan(row.change) else f"{100 * row.change:+.1f} %"
+            touched = "-" if math.isnan(row.touched) else f"{row.touched:.4g}{spread}"
+            lines.append(f"  {row.channel:10s}{row.r0:10.4g}  {touched + ' ' + row.unit:22s}{change:>10s}{row.contacts:10d}")
+    for name, each in result.get("evaluation", {}).items():
+        lines += [f"{name}: {detector:16s}{_judged(of)}" for detector, of in each.items()]
+    return lines
+
+
+def _judged(of: dict[str, Any]) -> str:
+    def rate(key: str) -> str:
+        return f"{of[key]['value']:.3f} [{of[key]['low']:.3f}, {of[key]['high']:.3f}]" if of[key]["value"] is not None else "-"
+
+    return f"precision {rate('precision')}  recall {rate('recall')}  false alarms a minute {rate('false_alarms')}"
