@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from calibration.controller import Command, JointController
 from calibration.finger import HUMAN, RATE_HZ, Finger, FingerSensor, Plant, Reader
+from skinfab.readout.frame import Frame
 
 FloatArray = NDArray[np.float64]
 
@@ -101,8 +102,16 @@ class Run:
         return float(np.mean(np.abs(self.robot - self.motion.angle)))
 
 
-def follow(motion: Motion, controller: JointController, *, seed: int, plant: Plant | None = None, human: FingerSensor = HUMAN) -> Run:
-    """Let the simulated finger follow a motion.
+def follow(
+    motion: Motion,
+    controller: JointController,
+    *,
+    seed: int,
+    plant: Plant | None = None,
+    human: FingerSensor = HUMAN,
+    readings: Sequence[Frame] | None = None,
+) -> Run:
+    """Let the simulated robot finger follow a motion.
 
     Parameters
     ----------
@@ -115,14 +124,16 @@ def follow(motion: Motion, controller: JointController, *, seed: int, plant: Pla
         Without it the simulated robot finger as it is.
     human : FingerSensor
         Read by the same board as the robot's, hence with the same delay.
+    readings : sequence of n Frame, optional
+        Of a human's sensor, logged; instead of simulated ones.
     """
     plant = plant or Plant()
-    finger = Finger(plant, seed=seed, angle=float(motion.angle[0]))
+    finger = Finger(plant, seed=seed, angle=min(max(float(motion.angle[0]), plant.low), plant.high))
     reader = Reader(human, plant.delay_s, np.random.default_rng([seed, 3]))
     commands, robot, speed = [], np.empty(len(motion.time)), 0.0
     for k, (time, angle) in enumerate(zip(motion.time.tolist(), motion.angle.tolist(), strict=True)):
         shown = finger.step(time, speed)
-        command = controller.step(time, reader.read(time, angle), shown)
+        command = controller.step(time, reader.read(time, angle) if readings is None else readings[k], shown)
         speed, robot[k] = command.speed, finger.angle
         commands.append(command)
     return Run(motion, robot, tuple(commands))

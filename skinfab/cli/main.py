@@ -33,6 +33,7 @@ COMMANDS = {
     "record": "record the frames of a port",
     "calibrate": "fit a strain sensor to joint angles",
     "replay": "a recorded log through the same code as live data",
+    "control": "a robot's joint follows a human's, both read by strain sensors",
     "contact": "find contacts in the readings of a skin",
     "bench": "measure the project beside its peers: time against distortion",
 }

@@ -1,0 +1,119 @@
+"""`skinfab control --port`: the loop in real time, on frames from a board."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+from skinfab.errors import InputError
+
+if TYPE_CHECKING:
+    from calibration.controller import Input
+    from calibration.loop import Loop
+    from calibration.margin import Margin
+
+
+def run_port(args: argparse.Namespace, human: Input, robot: Input, margin: Margin) -> int:
+    """Control for `args.seconds`, write what happened, and say how long commands took."""
+    from calibration.controller import JointController
+    from calibration.loop import run_loop
+    from skinfab.cli.control import RATE_HZ
+    from skinfab.readout.serial_port import SerialPort
+
+    with SerialPort(args.port) as port:
+        stream = port.stream
+        human, robot = (type(each)(each.calibration, stream.index(each.calibration.signal)) for each in (human, robot))
+        period = 1 / (stream.rate_hz or RATE_HZ)
+        options: dict[str, Any] = {"law": args.controller, "gain": margin.gain, "lag_s": args.lag, "delay_s": args.delay}
+        with _commands(args.commands) as send:
+            loop = run_loop(port, JointController(human, robot, **options, period_s=period), send, seconds=args.seconds)
+        counts = port.counts
+    result = facts(args, loop, margin, simulated=stream.simulated)
+    result["counts"] = {"lost": counts.lost, "bad": counts.bad, "late": counts.late, "reopened": counts.reopened}
+    _write(args, loop, result)
+    if args.json:
+        print(json.dumps(result, allow_nan=False))
+        return 0
+    taken = result["latency_ms"]
+    print(
+        f"{result['commands']} commands in {args.seconds:g} s: from frame to command {taken['median']:.2f} ms, worst {taken['worst']:.2f}; "
+        f"held or stopped {100 * result['held_or_stopped']:.0f} % of them; {counts.lost} frames lost, {counts.bad} bad"
+        if taken
+        else f"no frame came from {args.port} in {args.seconds:g} s"
+    )
+    print(f"{args.output}: control.csv, control.json, control.png")
+    return 0
+
+
+@contextmanager
+def _commands(port: str | None) -> Iterator[Callable[[float], None]]:
+    """Where commands go: a line of text each, deg/s."""
+    if port is None:
+        yield lambda speed: None
+        return
+    import serial
+
+    try:
+        device = serial.Serial(port, write_timeout=0.05)
+    except (OSError, ValueError) as fault:
+        raise InputError(f"{port}: {fault}; give the port of the robot's hand") from fault
+
+    def send(speed: float) -> None:
+        try:
+            device.write(f"{speed:.3f}\n".encode())
+        except OSError as fault:
+            raise InputError(f"{port} takes no commands any more ({fault}); is it still plugged in?") from fault
+
+    with device:
+        yield send
+
+
+def facts(args: argparse.Namespace, loop: Loop, margin: Margin, *, simulated: bool) -> dict[str, Any]:
+    """The result, ready for JSON."""
+    import numpy as np
+
+    from skinfab.cli.control import margin_facts
+
+    taken = 1e3 * loop.latency_s[np.isfinite(loop.latency_s)]
+    jitter = 1e3 * np.abs(loop.jitter_s)
+    return {
+        "controller": args.controller,
+        "simulated": simulated,
+        "margin": margin_facts(margin),
+        "commands": len(loop.commands),
+        "passed_over": loop.passed_over,
+        "held_or_stopped": float(np.mean([command.state != "run" for command in loop.commands])) if loop.commands else 0.0,
+        "outside": float(np.mean([command.outside for command in loop.commands])) if loop.commands else 0.0,
+        "latency_ms": {"median": float(np.median(taken)), "p99": float(np.quantile(taken, 0.99)), "worst": float(taken.max())}
+        if len(taken)
+        else None,
+        "jitter_ms": {"p99": float(np.quantile(jitter, 0.99)), "worst": float(jitter.max())} if len(jitter) else None,
+    }
+
+
+def _write(args: argparse.Namespace, loop: Loop, result: dict[str, Any]) -> None:
+    import csv
+    import io
+    import math
+
+    from calibration.loop_figure import draw_loop
+    from skinfab.files import atomic_write
+
+    args.output.mkdir(parents=True, exist_ok=True)
+    text = io.StringIO()
+    if result["simulated"]:
+        text.write("# simulated: true\n")
+    rows = csv.writer(text, lineterminator="\n")
+    rows.writerow(
+        ["time_s", "sequence", "target_deg", "estimate_deg", "command_deg_s", "state", "reason", "outside", "clamped", "latency_ms"]
+    )
+    for t, k, late, c in zip(loop.time.tolist(), loop.sequence.tolist(), loop.latency_s.tolist(), loop.commands, strict=True):
+        numbers = ["" if math.isnan(value) else f"{value:.6g}" for value in (c.target, c.angle, c.speed)]
+        taken = "" if math.isnan(late) else f"{1e3 * late:.4g}"
+        rows.writerow([f"{t:.4f}", k, *numbers, c.state, c.reason, int(c.outside), int(c.clamped), taken])
+    atomic_write(args.output / "control.csv", text.getvalue())
+    atomic_write(args.output / "control.json", json.dumps(result, indent=1, allow_nan=False) + "\n")
+    draw_loop(loop, args.output / "control.png", title=f"controller {args.controller}" + (" (simulated)" if result["simulated"] else ""))

@@ -1,0 +1,154 @@
+"""`skinfab control`: simulator, log and port; what is refused, and the ways in which it is used wrongly."""
+
+import csv
+import json
+import os
+import pty
+import threading
+from pathlib import Path
+
+import pytest
+
+from calibration.controller import LAWS
+from calibration.document import save_calibration
+from calibration.finger import HUMAN, ROBOT
+from calibration.finger_logs import calibrated
+from calibration.loop import FingerBoard
+from calibration.protocols import PAPER_DEG, uniform
+from skinfab.cli import control
+from skinfab.cli.main import main
+from skinfab.readout.pty_server import PtyServer
+
+ROOT = Path(__file__).resolve().parents[2]
+FILES = ["control.csv", "control.json", "control.png"]
+
+
+@pytest.fixture(scope="module")
+def calibrations(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
+    folder = tmp_path_factory.mktemp("calibrations")
+    for sensor in (HUMAN, ROBOT):
+        for model in ("poly", "branches"):
+            save_calibration(calibrated(sensor, model), folder / f"{sensor.name}_{model}.json")
+    return {path.stem: str(path) for path in folder.iterdir()}
+
+
+def test_names_are_those_of_the_library() -> None:
+    assert control.LAWS == LAWS and control.PROTOCOLS == tuple(PAPER_DEG)
+
+
+def test_simulator(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "out"
+    assert main(["control", "simulator", "-o", str(out), "--json"]) == 0
+    printed = capsys.readouterr()
+    result = json.loads(printed.out)
+    assert sorted(path.name for path in out.iterdir()) == FILES and json.loads((out / "control.json").read_text()) == result
+    assert [run["protocol"] for run in result["runs"]] == list(control.PROTOCOLS) and result["simulated"] is True
+    assert all(run["mean_error_deg"] < run["paper_mean_error_deg"] / 2 for run in result["runs"])
+    assert result["margin"]["gain_margin"] == pytest.approx(3)
+    with (out / "control.csv").open() as file:
+        assert file.readline() == "# simulated: true\n"
+        rows = list(csv.DictReader(file))
+    even = [row for row in rows if row["protocol"] == "uniform"]
+    mean = sum(abs(float(row["robot_deg"]) - float(row["human_deg"])) for row in even) / len(even)
+    assert mean == pytest.approx(result["runs"][0]["mean_error_deg"], abs=1e-3)
+
+
+def test_words_for_people_and_a_forced_gain(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    words = ["control", "simulator", "--controller", "p", "--gain", "9", "-o", str(tmp_path / "o")]
+    assert main(words) == 3
+    assert "give less than" in capsys.readouterr().err and not (tmp_path / "o").exists()
+    assert main([*words, "--force"]) == 0
+    printed = capsys.readouterr()
+    assert "gain margin 0.8" in printed.out and "uniform: mean error" in printed.out and "the paper's: 18.77" in printed.out
+    assert "was forced: expect the joint to swing" in printed.err
+
+
+def test_a_log_is_followed(calibrations: dict[str, str], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    log = str(ROOT / "calibration/logs/human_finger.csv")
+    out = tmp_path / "o"
+    assert main(["control", log, "--human", calibrations["human_branches"], "-o", str(out), "--json"]) == 0
+    (run,) = json.loads(capsys.readouterr().out)["runs"]
+    assert run["protocol"] == "human_finger.csv" and run["paper_mean_error_deg"] is None and run["mean_error_deg"] < 3.3
+
+
+def test_a_log_without_angles(calibrations: dict[str, str], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    lines = (ROOT / "calibration/logs/human_finger.csv").read_text().splitlines()[2:2000]
+    (tmp_path / "bare.csv").write_text("\n".join(",".join(line.split(",")[::2]) for line in lines))
+    words = ["control", str(tmp_path / "bare.csv"), "--human", calibrations["human_branches"], "-o", str(tmp_path / "o")]
+    assert main(words) == 0
+    assert "has no column 'PIP_deg': the error is that to the angle read" in capsys.readouterr().err
+
+
+def test_a_hole_in_the_log_stops_the_joint(calibrations: dict[str, str], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    lines = (ROOT / "calibration/logs/human_finger.csv").read_text().splitlines()
+    (tmp_path / "hole.csv").write_text("\n".join([*lines[:400], *lines[500:1000]]))
+    words = ["control", str(tmp_path / "hole.csv"), "--human", calibrations["human_branches"], "-o", str(tmp_path / "o"), "--json"]
+    assert main(words) == 0
+    (run,) = json.loads(capsys.readouterr().out)["runs"]
+    assert run["held_or_stopped"] == pytest.approx(0.9 / 9.97, abs=0.003)  # the first tenth of that second the last frame is fresh enough
+
+
+def test_port(calibrations: dict[str, str], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Frames from one pseudo-terminal, commands to another, which drive the simulated joint."""
+    board = FingerBoard(uniform(length_s=5.0), seed=0)
+    ours, theirs = pty.openpty()
+    received: list[bytes] = []
+
+    def drive() -> None:
+        rest = b""
+        while data := os.read(ours, 4096):
+            *lines, rest = (rest + data).split(b"\n")
+            for line in lines:
+                received.append(line)
+                if line.startswith(b"end"):
+                    return
+                board.command(float(line))
+
+    hand = threading.Thread(target=drive, daemon=True)
+    hand.start()
+    words = ["--human", calibrations["human_branches"], "--robot", calibrations["robot_branches"], "--seconds", "1.5", "--json"]
+    with PtyServer(board.stream, board) as device:
+        status = main(["control", "--port", str(device.path), "--commands", os.ttyname(theirs), *words, "-o", str(tmp_path / "o")])
+    os.write(theirs, b"end\n")
+    hand.join(5)
+    result = json.loads(capsys.readouterr().out)
+    assert status == 0 and sorted(path.name for path in (tmp_path / "o").iterdir()) == FILES
+    assert result["simulated"] is True and result["counts"]["bad"] == 0
+    assert result["commands"] + result["passed_over"] > 130 and 0 < result["latency_ms"]["median"] <= result["latency_ms"]["worst"]
+    commands = [line for line in received if not line.startswith(b"end")]
+    assert len(commands) == result["commands"] + 1 and float(commands[-1]) == 0.0
+    assert abs(board.robot[120] - uniform().angle[120]) < 10
+
+
+@pytest.mark.parametrize(
+    ("words", "status", "says"),
+    [
+        ([], 2, "give one of: simulator, a LOG, --port PORT"),
+        (["simulator", "--port", "x"], 2, "give one of"),
+        (["simulator", "--commands", "x"], 2, "--commands goes with --port"),
+        (["log.csv"], 2, "--human C.json is needed"),
+        (["--port", "x", "--human", "h.json"], 2, "--robot C.json is needed"),
+        (["simulator", "--gain", "-1"], 2, "not a positive number"),
+        (["simulator", "--human", "nowhere.json"], 1, "nowhere.json"),
+        (["simulator", "--delay", "0"], 2, "not a positive number"),
+    ],
+)
+def test_wrong_usage(words: list[str], status: int, says: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["control", *words, "-o", str(tmp_path / "o")]) == status
+    assert says in capsys.readouterr().err and not (tmp_path / "o").exists()
+
+
+@pytest.mark.parametrize(
+    ("more", "says"),
+    [
+        (["--human", "human_poly", "--robot", "robot_branches"], "model poly"),
+        (["--human", "human_branches", "--robot", "robot_branches", "--port", "/dev/no-such-port"], "/dev/no-such-port"),
+    ],
+)
+def test_what_cannot_be_used(
+    more: list[str], says: str, calibrations: dict[str, str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = [calibrations.get(word, word) for word in more]
+    what = [] if "--port" in words else ["simulator"]
+    assert main(["control", *what, *words, "-o", str(tmp_path / "o")]) == 1
+    assert says in capsys.readouterr().err and not (tmp_path / "o").exists()
