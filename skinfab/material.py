@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import tomllib
 from collections.abc import Sequence
 from dataclasses import MISSING, dataclass, fields
@@ -11,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from skinfab.errors import InputError
+from skinfab.tolerances import PARAMETER_ROUNDING_MM, PARAMETER_STEP_MM
 
 #: The bundled profile of the paper's process.
 DEFAULT_MATERIAL = "carbon-grease-ecoflex"
@@ -32,6 +34,11 @@ class Ink:
     def conducting_area_mm2(self) -> float:
         """The cross-section that a resistance is computed with, mm^2."""
         return self.effective_area_mm2 or self.bead_area_mm2
+
+    @property
+    def least_width(self) -> float:
+        """Width of a round bead of `bead_area_mm2`, mm, cut to a parameter's step: ink settles wider, and not narrower."""
+        return math.floor(2 * math.sqrt(self.bead_area_mm2 / math.pi) / PARAMETER_STEP_MM) * PARAMETER_STEP_MM
 
 
 @dataclass(frozen=True)
@@ -112,7 +119,13 @@ def load_material(name: str | Path = DEFAULT_MATERIAL) -> Material:
     where = f"material profile {name}"
     layers = tuple(_build(Layer, layer, f"{where}, layer") for layer in data.pop("layers", []))
     parts = {"ink": _build(Ink, data.pop("ink", {}), f"{where}, [ink]"), "mould": _build(Mould, data.pop("mould", {}), f"{where}, [mould]")}
-    return _build(Material, {**data, **parts, "layers": layers}, where)
+    material: Material = _build(Material, {**data, **parts, "layers": layers}, where)
+    if (ink := material.ink).bead_width < ink.least_width - PARAMETER_ROUNDING_MM:
+        raise InputError(
+            f"{where}, [ink]: bead_width is {ink.bead_width:g}, but a round bead of bead_area_mm2 = {ink.bead_area_mm2:g} is wider; "
+            f"it must be at least {ink.least_width:g}"
+        )
+    return material
 
 
 def _build(kind: type, data: dict[str, Any], where: str) -> Any:

@@ -1,13 +1,14 @@
 """Resistance and ink against the figures of the specification and against sampling."""
 
 import dataclasses
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from skinfab.electrical import ink_volume, resistance, strain_ratio
 from skinfab.errors import InputError
-from skinfab.material import load_material
+from skinfab.material import load_material, material_toml
 from skinfab.patterns.contact_spiral import ContactSpiral
 
 INK = load_material().ink
@@ -44,3 +45,13 @@ def test_impossible_inputs(call: object, says: str) -> None:
         call()  # type: ignore[operator]
     with pytest.raises(InputError, match="bead_area_mm2"):
         resistance(1, dataclasses.replace(INK, bead_area_mm2=0.0))
+
+
+def test_a_bead_is_no_narrower_than_its_cross_section(tmp_path: Path) -> None:
+    profile = material_toml(load_material())
+    assert "bead_width = 0.785" in profile
+    (tmp_path / "own.toml").write_text(profile.replace("bead_width = 0.785", "bead_width = 0.784"))
+    with pytest.raises(
+        InputError, match=r"bead_width is 0.784, but a round bead of bead_area_mm2 = 0.484 is wider; it must be at least 0.785"
+    ):
+        load_material(tmp_path / "own.toml")

@@ -47,7 +47,7 @@ class Pattern(ABC):
     Parameters
     ----------
     bead : float, mm
-        Width of the printed bead; at least 0.05.
+        Width that is kept clear for the printed bead; at least 0.05, and at least as wide as the bead that the material's ink makes.
     gap : float, mm
         Least distance from bead edge to bead edge; 0 or more.
     pad : float, mm

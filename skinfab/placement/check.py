@@ -10,15 +10,15 @@ from typing import Protocol
 
 import numpy as np
 
-from skinfab.errors import RefusedError
+from skinfab.errors import InputError, RefusedError
 from skinfab.flatten.locate import Locator
-from skinfab.material import Material
+from skinfab.material import Ink, Material
 from skinfab.paths import Path
-from skinfab.patterns.base import Pattern
+from skinfab.patterns.base import Pattern, PatternError
 from skinfab.pieces import Piece
 from skinfab.placement.distance import Curves, distance, self_distance
 from skinfab.placement.sensor import Sensor
-from skinfab.tolerances import CLEARANCE_MM, PREVIEW_CHORD_MM
+from skinfab.tolerances import CLEARANCE_MM, PARAMETER_ROUNDING_MM, PREVIEW_CHORD_MM
 
 #: How many findings a refusal names.
 _NAMED = 5
@@ -140,7 +140,14 @@ def validate(skin: PlacedSensors, material: Material) -> None:
     ------
     RefusedError
         Something is wrong; the worst of it is named.
+    InputError
+        A sensor's bead is narrower than the one that is printed.
     """
+    for sensor in skin.sensors:
+        try:
+            refuse_narrow_bead(sensor.pattern, material.ink)
+        except PatternError as fault:
+            raise InputError(f"{sensor.id}: {fault}") from fault
     found: list[Finding] = []
     checker = _Checker(material)
     pieces = {p.id: p for p in skin.pieces}
@@ -155,6 +162,19 @@ def validate(skin: PlacedSensors, material: Material) -> None:
         found += checker.faults(pieces[sensor.piece], sensor, skin.sensors[:k])
     if found:
         raise RefusedError(describe(found))
+
+
+def refuse_narrow_bead(pattern: Pattern, ink: Ink) -> None:
+    """A pattern keeps its `bead` clear; what is printed is as wide as the ink's cross-section makes it.
+
+    Raises
+    ------
+    PatternError
+        That is wider.
+    """
+    if pattern.bead < ink.least_width - PARAMETER_ROUNDING_MM:
+        why = f"it must be at least {ink.least_width:g}, as wide as the material's {ink.bead_area_mm2:g} mm^2 of ink is printed"
+        raise PatternError(pattern.kind, "bead", pattern.bead, why, ink.least_width)
 
 
 def describe(found: Sequence[Finding]) -> str:

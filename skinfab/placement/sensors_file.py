@@ -50,6 +50,7 @@ from skinfab.material import Material
 from skinfab.patterns.base import Pattern
 from skinfab.patterns.registry import PATTERNS, make_pattern
 from skinfab.placement.auto import AutoOptions
+from skinfab.placement.check import refuse_narrow_bead
 from skinfab.placement.sensor import ID, ID_WORDS, Sensor
 
 Vector: TypeAlias = tuple[float, float, float]
@@ -169,6 +170,7 @@ def _requests(tables: Sequence[Mapping[str, Any]], where: str, material: Materia
             pattern = make_pattern(
                 table["kind"], {"bead": material.ink.bead_width, "gap": material.gap, "pad": material.pad, **table["params"]}
             )
+            refuse_narrow_bead(pattern, material.ink)
         except InputError as fault:
             raise InputError(f"{here}: {fault}") from fault
         if not isinstance(id, str) or not ID.fullmatch(id):

@@ -132,6 +132,7 @@ def test_adding_to_what_is_there(placed: Path, tmp_path: Path) -> None:
         (["--move", "C1", "500", "2"], 3, "C1 is .* outside piece P1"),
         (["--move-to", "C1", "P9", "5", "2"], 3, "C1 is on piece P9, which does not exist; there are P1"),
         (["--set", "C1", "n=40"], 1, "C1: contact-spiral: n is 40; .* the nearest value that works is 3"),
+        (["--set", "C1", "bead=0.3"], 1, "C1: contact-spiral: bead is 0.3; it must be at least 0.785, as wide as .* 0.484 mm.2 of ink"),
         (["--set", "C1", "s=300"], 3, "C1 is .* outside piece P1"),
         (["--set", "C1", "m=2"], 1, "unknown parameter 'm'"),
         (["--set", "C1", "n=wide"], 1, "n is 'wide'; it must be a finite number"),

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from skinfab.errors import RefusedError
+from skinfab.errors import InputError, RefusedError
 from skinfab.material import load_material
 from skinfab.patterns.contact_spiral import ContactSpiral
 from skinfab.patterns.strain_lines import StrainLines
@@ -115,6 +115,21 @@ def test_validate_names_the_worst_first(sheet: Callable) -> None:
         validate(SimpleNamespace(pieces=(piece,), sensors=many), MATERIAL)
 
 
+@pytest.mark.parametrize(("area", "bead", "least"), [(0.484, 0.785, None), (0.484, 0.7849, 0.785), (0.19, 0.5, None), (1.0, 1.0, 1.128)])
+def test_a_bead_is_no_narrower_than_it_is_printed(sheet: Callable, area: float, bead: float, least: float | None) -> None:
+    _, piece = sheet(80, 60)
+    material = dataclasses.replace(MATERIAL, ink=dataclasses.replace(MATERIAL.ink, bead_area_mm2=area))
+    skin = SimpleNamespace(pieces=(piece,), sensors=(put(20, 20, pattern=StrainLines(l1=30, l2=20, b=6, bead=bead, gap=0.6)),))
+    if least is None:
+        validate(skin, material)
+        return
+    with pytest.raises(InputError, match=rf"^C1: strain-lines: bead is {bead}; it must be at least {least}, .* {area:g} mm\^2 of ink"):
+        validate(skin, material)
+    (sensor,) = skin.sensors
+    skin.sensors = (dataclasses.replace(sensor, pattern=dataclasses.replace(sensor.pattern, bead=least)),)
+    validate(skin, material)
+
+
 def test_advice_is_in_the_right_number(sheet: Callable) -> None:
     _, piece = sheet(60, 60)
 
@@ -137,13 +152,14 @@ def test_many_sensors_are_judged_each_by_its_own_piece_and_pattern(sheet: Callab
     _, large = sheet(60, 60)
     small = dataclasses.replace(sheet(30, 30)[1], id="P2")
     dense = StrainLines(l1=30, l2=20, b=3, bead=0.5, gap=0.5)
+    thin = dataclasses.replace(MATERIAL, ink=dataclasses.replace(MATERIAL.ink, bead_area_mm2=0.19))
     sensors = (
         put(30, 30),
         dataclasses.replace(put(30, 30, id="C2", channel=1), piece="P2"),
         put(10, 50, pattern=dense, id="S1", channel=2),
     )
     with pytest.raises(RefusedError) as refused:
-        validate(SimpleNamespace(pieces=(large, small), sensors=sensors), MATERIAL)
+        validate(SimpleNamespace(pieces=(large, small), sensors=sensors), thin)
     said = str(refused.value).split("; ")
     assert [s.split(" mm ", 1)[1] for s in said[:2]] == ["outside piece P2, which spans 0 to 30 x 0 to 30 mm", "too close to itself"]
     assert said[2:] == ["move, turn or shrink them"]

@@ -48,6 +48,10 @@ def test_the_example_of_the_user_guide(tmp_path: Path) -> None:
         (GOOD.replace('"auto"', '{ piece = "P1", x = "3", y = 4 }'), "x is '3'; it must be a number"),
         (GOOD.replace('"auto"', "{ point = [3, 4] }"), r"point is \[3, 4\]"),
         (GOOD.replace("x = 1.7", "x = 1.0"), "sensor 1 .C1. of sensors.toml: contact-spiral: x is 1.0; it must be at least 1.385"),
+        (
+            GOOD.replace("x = 1.7", "x = 1.7, bead = 0.784"),
+            "sensor 1 .C1. of sensors.toml: contact-spiral: bead is 0.784; .* at least 0.785",
+        ),
         (GOOD.replace("x = 1.7", "pitch = 1.7"), "sensor 1 .C1. of sensors.toml: contact-spiral: unknown parameter 'pitch'"),
         (GOOD + "channel = -1", "channel is -1; it must be a whole number"),
         (GOOD + 'id = ""', "sensor 1 of sensors.toml: id is ''"),
