@@ -127,7 +127,7 @@ def trace_as_far(text: str, *, spindle: Spindle | None = None) -> tuple[Trace, I
     """As `trace`, up to the line that cannot be read or followed, and what is wrong with it."""
     head, commands, fault = _Head(spindle), [], None
     try:
-        for told in read_commands(text):
+        for told in read_commands(text, blocks=spindle is not None):
             command = head.continued(told)
             head.follow(command)
             commands.append(command)

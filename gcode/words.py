@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 
+from gcode.blocks import parted
 from skinfab.errors import InputError
 
 #: Heaters, which may name a tool by T.
@@ -95,8 +96,10 @@ def _example_in(folder: Path) -> str:
     return f", such as {found}" if found else ", there is none in it"
 
 
-def read_commands(text: str) -> Iterator[Command]:
+def read_commands(text: str, *, blocks: bool = False) -> Iterator[Command]:
     """The commands and comments of a text, in order; a line of comment alone has the code "", one of words alone `MODAL` or `SETTING`.
+
+    With `blocks` a line may have several codes, as RS-274 allows (`gcode.blocks`); each is a command of its own.
 
     Raises
     ------
@@ -119,22 +122,22 @@ def read_commands(text: str) -> Iterator[Command]:
             if mark:
                 yield Command(line, "", {}, comment.strip(), len(raw if raw.isascii() else raw.encode()))
             continue
-        found = _COMMAND.match(body)
-        if not found and (bare := _BARE.match(body)):
-            words = _words(body[bare.end() :], line, MODAL)
-            code = SETTING if words.keys() <= {"F", "S"} else MODAL
-            yield Command(line, code, words, comment.strip(), len(raw if raw.isascii() else raw.encode()))
-            continue
-        if not found:
-            known = (
-                "what begins with $ is told to GRBL before, not in a file"
-                if body[0] == "$"
-                else "a command begins with G, M or T and a number"
-            )
-            raise InputError(f"line {line}: cannot read {_shown(body)}; {known}")
+        size = len(raw if raw.isascii() else raw.encode())
+        for part in parted(body) if blocks else (body,):
+            code, words = _command(part, line)
+            yield Command(line, code, words, comment.strip(), size)
+
+
+def _command(body: str, line: int) -> tuple[str, dict[str, float | None]]:
+    found = _COMMAND.match(body)
+    if found:
         code = _code(*found.groups())
-        words = _words(body[found.end() :], line, code) if code in READ else {}
-        yield Command(line, code, words, comment.strip(), len(raw if raw.isascii() else raw.encode()))
+        return code, _words(body[found.end() :], line, code) if code in READ else {}
+    if bare := _BARE.match(body):
+        words = _words(body[bare.end() :], line, MODAL)
+        return SETTING if words.keys() <= {"F", "S"} else MODAL, words
+    known = "what begins with $ is told to GRBL before, not in a file" if body[0] == "$" else "a command begins with G, M or T and a number"
+    raise InputError(f"line {line}: cannot read {_shown(body)}; {known}")
 
 
 @lru_cache(maxsize=1024)
