@@ -15,6 +15,7 @@ NAMES = {
     "simplify": "triangles solved for against distortion and time",
     "gcode": "arcs and chord tolerances against file size, deviation and time",
     "calibrate": "models and degrees of a strain calibration against held-out error and time",
+    "control": "gain, delay and period against the error of a controlled joint",
 }
 
 #: Where its `run` is, and whether it takes --sizes.
@@ -23,6 +24,7 @@ MODULES = {
     "simplify": ("skinfab.bench.simplify", True),
     "gcode": ("gcode.bench", False),
     "calibrate": ("calibration.bench", False),
+    "control": ("calibration.bench_control", False),
 }
 
 

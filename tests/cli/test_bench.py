@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from skinfab.cli.bench import NAMES
 from skinfab.cli.main import main
 
 SMALL = ["--sizes", "300", "--repeats", "1"]
@@ -23,8 +24,8 @@ def test_json_is_all_there_is_on_standard_output(tmp_path: Path, capsys: pytest.
 def test_the_sentence_is_printed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["bench", "-o", str(tmp_path), *SMALL]) == 0
     out = capsys.readouterr().out.splitlines()
-    assert out[:3] == [(tmp_path / f"{name}.txt").read_text().splitlines()[0] for name in ("flatten", "simplify", "gcode")]
-    assert out[3].startswith("wrote ") and all(str(tmp_path / name) in out[3] for name in ("refine.png", "simplify.png", "gcode.png"))
+    assert out[:-1] == [(tmp_path / f"{name}.txt").read_text().splitlines()[0] for name in NAMES]
+    assert out[-1].startswith("wrote ") and all(str(tmp_path / f"{name}.png") in out[-1] for name in (*NAMES, "refine"))
 
 
 @pytest.mark.parametrize(
