@@ -32,6 +32,7 @@ COMMANDS = {
     "strips": "calibration strips for the ink: print them, then fit what was measured",
     "record": "record the frames of a port",
     "calibrate": "fit a strain sensor to joint angles",
+    "angle": "a joint's angle from the markers of a motion capture",
     "replay": "a recorded log through the same code as live data",
     "control": "a robot's joint follows a human's, both read by strain sensors",
     "contact": "find contacts in the readings of a skin",

@@ -1,0 +1,143 @@
+"""`skinfab angle FILE --mcp M --pip P --dip D -o LOG`: the angle of a joint from the markers of a motion capture."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from skinfab.cli import steps
+
+if TYPE_CHECKING:
+    from calibration.markers import Markers
+    from skinfab.readout.frame import Recording
+
+#: What the column is called.
+COLUMN = "angle_deg"
+
+
+def number(text: str) -> float:
+    """Any finite number."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise argparse.ArgumentTypeError(f"{text!r} is no number of seconds")
+    return value
+
+
+def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add the command and its options."""
+    p = subparsers.add_parser(
+        "angle",
+        help="a joint's angle from the markers of a motion capture",
+        description="The angle between the bones MCP to PIP and PIP to DIP from a C3D file or Vicon's CSV export: as a log of its own, or "
+        "added to a log of readings, which skinfab calibrate takes with --angle angle_deg.",
+    )
+    p.add_argument("capture", metavar="FILE", type=Path, help="C3D file or Vicon CSV export")
+    for name, what in (("mcp", "metacarpophalangeal"), ("pip", "proximal interphalangeal"), ("dip", "distal interphalangeal")):
+        p.add_argument(f"--{name}", metavar="MARKER", required=True, help=f"label of the marker on the {what} joint")
+    p.add_argument("--max-gap", metavar="S", type=steps.not_negative, default=None, help="bridge gaps up to this (default: 0.1 s; 0: none)")
+    p.add_argument("--log", metavar="LOG", type=Path, help="add the angle to this log of readings, at its times")
+    p.add_argument("--shift", metavar="S", type=number, default=0.0, help="when the capture began by the log's time, s (default: 0)")
+    p.add_argument("-o", "--output", metavar="LOG", type=Path, required=True, help="where to: .csv, .mcap, .bag, or a folder for ROS 2")
+    p.add_argument("--json", action="store_true", help="print the result as one JSON object and nothing else")
+    p.set_defaults(run=run, wrong_usage=p.error)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Read, reckon, write, and say what was seen."""
+    if args.shift and not args.log:
+        args.wrong_usage("--shift says when the capture began by the time of a log; give --log too")
+    import numpy as np
+
+    from calibration.angle import MAX_GAP_S, bridge_gaps, joint_angle
+    from calibration.markers import read_markers
+    from skinfab.errors import InputError
+    from skinfab.files import require_place
+    from skinfab.readout.logs.log import write_log
+
+    require_place(args.output)
+    max_gap = MAX_GAP_S if args.max_gap is None else args.max_gap
+    made = read_markers(args.capture)
+    labels = {"mcp": args.mcp, "pip": args.pip, "dip": args.dip}
+    filled = {name: bridge_gaps(made.time, made.marker(label), max_gap_s=max_gap) for name, label in labels.items()}
+    angle = joint_angle(*(positions for positions, _ in filled.values()))
+    there = np.isfinite(angle)
+    if not there.any():
+        raise InputError(f"{args.capture}: in no frame are {', '.join(labels.values())} seen together, so there is no angle; bridge more")
+    bridged = np.any([each for _, each in filled.values()], axis=0) & there
+    notes = list(made.notes)
+    recording = _alone(made, angle) if args.log is None else _added(args.log, made, angle, args.shift, notes)
+    write_log(recording, args.output)
+    result: dict[str, Any] = {
+        "capture": {"file": made.file, "sha256": made.sha256},
+        "markers": labels,
+        "frames": len(made.time),
+        "rate_hz": made.rate_hz,
+        "seen": int(np.count_nonzero(there & ~bridged)),
+        "bridged": int(np.count_nonzero(bridged)),
+        "missing": int(np.count_nonzero(~there)),
+        "max_gap_s": max_gap,
+        "min_deg": float(angle[there].min()),
+        "max_deg": float(angle[there].max()),
+        "column": COLUMN,
+        "notes": notes,
+    }
+    if args.json:
+        print(json.dumps(result, allow_nan=False))
+        return 0
+    steps.say(notes)
+    print(
+        f"{made.file}: {result['min_deg']:.1f} to {result['max_deg']:.1f} degrees in {result['frames']:,} frames at {made.rate_hz:g} Hz; "
+        f"{result['bridged']:,} over gaps of up to {max_gap:g} s, {result['missing']:,} without an angle"
+    )
+    print(f"{args.output}: {COLUMN}")
+    return 0
+
+
+def _alone(made: Markers, angle: Any) -> Recording:
+    """The angle as a log of its own."""
+    from skinfab.readout.frame import Channel, Recording, Stream
+
+    stream = Stream(made.file, (Channel(COLUMN, "deg", "angle"),), made.rate_hz)
+    return Recording.of_values(stream, angle[:, None], device_time=made.time)
+
+
+def _added(path: Path, made: Markers, angle: Any, shift: float, notes: list[str]) -> Recording:
+    """A log with the angle as one channel more."""
+    from dataclasses import replace
+
+    import numpy as np
+
+    from skinfab.errors import InputError
+    from skinfab.readout.frame import Channel, Recording
+    from skinfab.readout.logs.log import read_log
+
+    log = read_log(path)
+    notes.extend(log.notes)
+    old = log.recording
+    if not len(old):
+        raise InputError(f"{path} has no frame; record something first")
+    since = old.device_time - old.device_time[0]
+    # A straight line to a frame without an angle has none: nothing is carried over a gap.
+    column = np.interp(since, made.time + shift, angle, left=np.nan, right=np.nan)[:, None]
+    there = np.isfinite(column)
+    if not there.any():
+        raise InputError(f"{path} and {made.file} have no moment in common; say with --shift when the capture began")
+    if not there.all():
+        notes.append(f"{log.file}: {int(np.count_nonzero(~there)):,} of {len(old):,} frames have no angle")
+    stream = replace(old.stream, channels=(*old.stream.channels, Channel(COLUMN, "deg", "angle")))
+    flags = np.zeros_like(there)
+    return Recording(
+        stream,
+        old.device_time,
+        old.host_time,
+        old.sequence,
+        np.hstack([old.values, column]),
+        np.hstack([old.valid, there]),
+        np.hstack([old.saturated, flags]),
+    )
