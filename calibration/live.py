@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calibration.document import SensorCalibration
-from calibration.reading import CUTOFF_HZ, AngleReader, frame_rate
+from calibration.prepare import CUTOFF_HZ
+from calibration.reading import AngleReader, frame_rate
 from skinfab.errors import InputError
 from skinfab.readout.bridge import QuarterBridge, at_rest, relative
 from skinfab.readout.filters import Lowpass

@@ -8,14 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from calibration.document import SensorCalibration
+from calibration.prepare import CUTOFF_HZ, MAX_GAP_S
 from skinfab.errors import InputError
 from skinfab.readout.filters import Lowpass
 from skinfab.readout.frame import Frame, Stream
-
-#: The cut-off of the paper's filter, Hz.
-CUTOFF_HZ = 5.0
-#: After a hole longer than this, s, the filter begins anew: what it remembers is of another time.
-MAX_GAP_S = 0.1
 
 
 @dataclass(frozen=True)
@@ -96,6 +92,7 @@ class AngleReader:
         fault = self._fault(time, signal, bool(frame.saturated[k]))
         if fault:
             return Reading(time, signal, math.nan, math.nan, False, fault)
+        # After a hole the filter begins anew: what it remembers is of another time.
         if time - self._last > max(MAX_GAP_S, 1.5 / self._filter.rate_hz):
             self._running = self._filter.causal()
         self._last = time
