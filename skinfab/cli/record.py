@@ -1,0 +1,178 @@
+"""`skinfab record PORT|simulator -o FILE`: frames from a port into a file, until Ctrl-C."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from contextlib import contextmanager
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from skinfab.cli import steps
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from skinfab.readout.paced import PacedFrames
+    from skinfab.readout.record import State
+    from skinfab.readout.serial_port import SerialPort
+
+SIMULATOR = "simulator"
+#: A larger recording is not read again at its end to be checked.
+_CHECKED_BYTES = 200_000_000
+
+
+def baud(text: str) -> int:
+    """A whole number from 1 up, for argparse."""
+    if not (text.isascii() and text.isdecimal() and int(text) > 0):
+        raise argparse.ArgumentTypeError(f"{text!r} is no baud rate; give one such as 921600")
+    return int(text)
+
+
+def channels(text: str) -> int:
+    """A whole number from 1 to 256, for argparse."""
+    if not (text.isascii() and text.isdecimal() and 1 <= int(text) <= 256):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number of channels from 1 to 256")
+    return int(text)
+
+
+def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add the command and its options."""
+    p = subparsers.add_parser(
+        "record",
+        help="record the frames of a port",
+        description="Record what a device sends until Ctrl-C, or for a while. Each frame is in the file at once: whatever happens, at most "
+        "the last one is lost. A port that is unplugged is waited for. What a device has to send: docs/readout.md.",
+    )
+    p.add_argument("port", metavar="PORT|simulator", help="such as /dev/ttyACM0, or simulator: strain channels of a joint that bends")
+    p.add_argument("-o", "--output", metavar="FILE", type=Path, required=True, help=".frames (exact, with checksums) or .csv; a new file")
+    p.add_argument("--seconds", metavar="S", type=steps.positive, help="end after so long (default: at Ctrl-C)")
+    p.add_argument("--baud", metavar="N", type=baud, help="of the port (default: 921600; a board with USB of its own does not care)")
+    p.add_argument("--channels", metavar="N", type=channels, help="of the simulator (default: 32)")
+    p.add_argument("--rate", metavar="HZ", type=steps.positive, help="of the simulator (default: 100)")
+    p.add_argument("--json", action="store_true", help="print the result as one JSON object and nothing else")
+    p.set_defaults(run=run, wrong_usage=p.error)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Record, and say what came and what did not."""
+    simulated = args.port == SIMULATOR
+    if simulated and args.baud:
+        args.wrong_usage("--baud is of a port; leave it out for the simulator")
+    if not simulated and (args.channels or args.rate):
+        args.wrong_usage("--channels and --rate are of the simulator; a port says itself what it sends")
+    from skinfab.readout.record import Recorder, record, require_new
+
+    require_new(args.output)
+    with _source(args) as source, Recorder(args.output, source.stream) as recorder:
+        states: list[State] = []
+        try:
+            with _shown(quiet=args.json, counts=lambda: source.counts) as show:
+
+                def told(state: State) -> None:
+                    states[:] = [state]
+                    show(state)
+
+                record(source, recorder, seconds=args.seconds, told=told)
+        except KeyboardInterrupt:
+            _taken()
+        recorder.sync()
+        counts = asdict(source.counts)
+    result: dict[str, Any] = {
+        "file": str(args.output),
+        "stream": source.stream.name,
+        "simulated": source.stream.simulated,
+        "channels": list(source.stream.names),
+        "frames": recorder.frames,
+        "bytes": recorder.bytes,
+        "counts": counts,
+        "notes": _notes(counts, args.output, recorder.bytes) if recorder.frames else ["no frame came; no file was left"],
+    }
+    if args.json:
+        print(json.dumps(result, allow_nan=False))
+        return 0
+    steps.say(result["notes"])
+    print(_sentence(result))
+    return 0
+
+
+def _source(args: argparse.Namespace) -> SerialPort | PacedFrames:
+    if args.port == SIMULATOR:
+        from skinfab.readout.strain_simulator import CHANNELS, RATE_HZ, simulated_strain
+
+        return simulated_strain(channels=args.channels or CHANNELS, rate_hz=args.rate or RATE_HZ)
+    from skinfab.readout.serial_port import BAUD, SerialPort
+
+    return SerialPort(args.port, baud=args.baud or BAUD)
+
+
+def _taken() -> None:
+    """Ctrl-C is the way to end a recording: it has got through, and is not to come a second time."""
+    import signal
+
+    signal.setitimer(signal.ITIMER_REAL, 0)
+
+
+@contextmanager
+def _shown(*, quiet: bool, counts: Callable[[], Any]) -> Iterator[Callable[[State], None]]:
+    """A line on standard error that is written anew every second, where that is a terminal."""
+    if quiet or not sys.stderr.isatty():
+        yield lambda state: None
+        return
+
+    def show(state: State) -> None:
+        now = counts()
+        print(
+            f"\r\x1b[K{_clock(state.seconds)}  {state.frames:,} frames  {state.rate_hz:.1f} Hz  {state.bytes / 1e6:.1f} MB  "
+            f"lost {now.lost}  bad {now.bad}  late {now.late}  "
+            f"disk {state.free_bytes / 1e9:.1f} GB left, {_clock(state.room_s)}  (Ctrl-C ends)",
+            end="",
+            file=sys.stderr,
+            flush=True,
+        )
+
+    try:
+        yield show
+    finally:
+        print("\r\x1b[K", end="", file=sys.stderr, flush=True)
+
+
+def _clock(seconds: float) -> str:
+    """Seconds as people read them.
+
+    Examples
+    --------
+    >>> _clock(75), _clock(7262), _clock(350_000), _clock(float("inf"))
+    ('1:15', '2:01:02', '4 days', 'for ever')
+    """
+    if seconds > 2 * 86_400:
+        return f"{seconds / 86_400:.0f} days" if seconds < 36_500 * 86_400 else "for ever"
+    minutes, rest = divmod(int(seconds), 60)
+    return f"{minutes // 60}:{minutes % 60:02}:{rest:02}" if minutes >= 60 else f"{minutes}:{rest:02}"
+
+
+def _notes(counts: dict[str, int], path: Path, size: int) -> list[str]:
+    """What is to be known of the recording, a sentence each."""
+    from skinfab.readout.checks import check
+    from skinfab.readout.logs.log import read_log
+
+    told = {
+        "bad": "pieces were no packet: noise on the line, or another program's output",
+        "late": "frames came late or a second time, and were dropped",
+        "unchecked": "frames came without a checksum; a wrong digit in them does not show",
+        "reopened": "times the port was gone and came back, or the device began anew",
+    }
+    notes = [f"{counts[name]:,} {words}" for name, words in told.items() if counts[name]]
+    if size <= _CHECKED_BYTES:
+        notes += check(read_log(path).recording)
+    return notes
+
+
+def _sentence(result: dict[str, Any]) -> str:
+    lost, frames = result["counts"]["lost"], result["frames"]
+    made = " of simulated data" if result["simulated"] else ""
+    share = f" ({lost / (lost + frames):.2%})" if lost else ""
+    size = f"{len(result['channels'])} channels, {result['bytes'] / 1e6:.2f} MB"
+    return f"{result['file']}: {frames:,} frames{made}, {size}, lost {lost:,}{share}"

@@ -1,0 +1,98 @@
+"""skinfab record as it is called: a simulator, a port, Ctrl-C, and what cannot be."""
+
+import json
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from skinfab.cli.main import main
+from skinfab.readout.faults import Faults
+from skinfab.readout.logs.log import read_log
+from skinfab.readout.pty_server import PtyServer
+from skinfab.readout.strain_simulator import strain_frames, strain_stream
+
+STREAM = strain_stream(channels=3, rate_hz=200.0)
+
+
+@pytest.mark.parametrize("suffix", [".frames", ".csv"])
+def test_the_simulator_is_recorded_and_labelled(tmp_path: Path, capsys: pytest.CaptureFixture[str], suffix: str) -> None:
+    path = tmp_path / f"a{suffix}"
+    assert main(["record", "simulator", "-o", str(path), "--seconds", "1.2", "--channels", "4", "--rate", "50"]) == 0
+    out = capsys.readouterr()
+    found = read_log(path).recording
+    assert found.stream.simulated and len(found.stream.channels) == 4 and 58 <= len(found) <= 62
+    assert out.out == f"{path}: {len(found)} frames of simulated data, 4 channels, {path.stat().st_size / 1e6:.2f} MB, lost 0\n"
+
+
+def test_a_port_is_recorded_and_what_went_wrong_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    faults = Faults(garbage=0.1, twice=0.1, unplugged={100: 0.2})
+    with PtyServer(STREAM, strain_frames(STREAM), faults=faults) as device:
+        assert main(["record", str(device.path), "-o", str(tmp_path / "a.frames"), "--seconds", "2", "--json"]) == 0
+    out = capsys.readouterr()
+    result = json.loads(out.out)
+    assert out.err == "" and result["frames"] == len(read_log(tmp_path / "a.frames").recording) > 200
+    assert result["counts"]["reopened"] == 1 and result["counts"]["bad"] > 10 and result["counts"]["lost"] > 5
+    for words in ("pieces were no packet", "frames came late or a second time"):
+        assert any(words in note for note in result["notes"])
+    assert any("the port was gone" in note for note in result["notes"])
+
+
+def test_lines_without_a_checksum_are_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    with PtyServer(STREAM, strain_frames(STREAM), ascii_lines=True) as device:
+        assert main(["record", str(device.path), "-o", str(tmp_path / "a.csv"), "--seconds", "0.5"]) == 0
+    assert "without a checksum" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_ctrl_c_ends_a_recording_that_is_whole(tmp_path: Path, number: int) -> None:
+    path = tmp_path / "a.frames"
+    command = [sys.executable, "-m", "skinfab", "record", "simulator", "-o", str(path), "--json"]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    for _ in range(300):
+        if path.exists() and path.stat().st_size > 5000:
+            break
+        time.sleep(0.05)
+    process.send_signal(number)
+    out, err = process.communicate(timeout=30)
+    assert process.returncode == 0 and err == ""
+    assert json.loads(out)["frames"] == len(read_log(path).recording) > 5
+
+
+def test_no_room_is_one_line_status_1_and_what_was_recorded_stays(tmp_path: Path) -> None:
+    path = tmp_path / "a.frames"
+    # A limit on the size of files is what a test can have of a full disk.
+    code = "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000)); from skinfab.cli.main import main; "
+    code += f"raise SystemExit(main(['record', 'simulator', '-o', {str(path)!r}]))"
+    done = subprocess.run([sys.executable, "-B", "-c", code], capture_output=True, text=True, timeout=60)
+    assert done.returncode == 1 and done.stderr.count("\n") == 1
+    assert "cannot write" in done.stderr and "frames recorded before are in it" in done.stderr
+    found = read_log(path)
+    assert len(found.recording) > 20 and found.notes == ()
+
+
+@pytest.mark.parametrize(
+    ("words", "status", "says"),
+    [
+        (["record", "/dev/none", "-o", "a.frames"], 1, "there is no port /dev/none"),
+        (["record", "simulator", "-o", "a.bin"], 1, "call a recording .frames"),
+        (["record", "simulator", "-o", "there.frames"], 1, "never overwritten"),
+        (["record", "simulator"], 2, "-o"),
+        (["record", "simulator", "-o", "a.frames", "--baud", "9600"], 2, "--baud is of a port"),
+        (["record", "/dev/none", "-o", "a.frames", "--channels", "3"], 2, "are of the simulator"),
+        (["record", "simulator", "-o", "a.frames", "--channels", "0"], 2, "from 1 to 256"),
+        (["record", "simulator", "-o", "a.frames", "--seconds", "0"], 2, "not a positive number"),
+        (["record", "/dev/none", "-o", "a.frames", "--baud", "fast"], 2, "no baud rate"),
+    ],
+)
+def test_what_cannot_be_is_one_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, words: list[str], status: int, says: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("there.frames").write_text("mine")
+    assert main(words) == status
+    assert says in capsys.readouterr().err.splitlines()[-1]
+    assert [p.name for p in tmp_path.iterdir()] == ["there.frames"]
