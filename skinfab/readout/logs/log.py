@@ -142,7 +142,8 @@ def table_of(log: Log) -> Table:
     columns = {}
     for k, channel in enumerate(made.stream.channels):
         readings = np.where(made.valid[:, k] & ~made.saturated[:, k], made.values[:, k], np.nan)[timed]
-        columns[channel.name] = np.degrees(readings) if channel.unit == "rad" else readings
+        with np.errstate(over="ignore"):  # of a damaged file; infinite is no number to a calibration either
+            columns[channel.name] = np.degrees(readings) if channel.unit == "rad" else readings
     time = made.device_time[timed]
     return Table(log.file, log.sha256, time - time[0], columns, {"simulated": "true"} if made.stream.simulated else {})
 

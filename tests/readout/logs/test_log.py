@@ -110,9 +110,9 @@ def test_a_recording_as_a_table(tmp_path: Path) -> None:
 
 
 def test_angles_in_rad_become_degrees(tmp_path: Path) -> None:
-    made = Recording.of_values(Stream("a", (Channel("pip", "rad"),)), np.array([[0.0], [np.pi / 2]]), device_time=np.arange(2.0))
+    made = Recording.of_values(Stream("a", (Channel("pip", "rad"),)), np.array([[0.0], [np.pi / 2], [1e308]]), device_time=np.arange(3.0))
     write_log(made, tmp_path / "a.csv")
-    assert table_of(read_log(tmp_path / "a.csv")).column("pip").tolist() == [0, 90]
+    assert table_of(read_log(tmp_path / "a.csv")).column("pip").tolist() == [0, 90, np.inf]
 
 
 def test_a_log_of_no_frames_is_no_table(tmp_path: Path) -> None:
