@@ -163,13 +163,7 @@ class ContactDetector:
         self.stream, self.false_alarms = stream, false_alarms
         self._columns = np.array([stream.index(name) for name in names], dtype=np.int64)
         still = max(round(STILL_S * stream.rate_hz), STILL_FRAMES)
-        self.alarm = alarm_for(
-            false_alarms,
-            channels=len(names),
-            rate_hz=stream.rate_hz,
-            still_frames=still,
-            baseline_frames=inner.BASELINE_S * stream.rate_hz,
-        )
+        self.alarm = alarm_for(false_alarms, channels=len(names), rate_hz=stream.rate_hz, still_frames=still)
         c = len(names)
         self._state, self._windows, self._effect = inner.fresh(c), np.zeros((c, still)), np.zeros(c, dtype=np.int64)
         self._time = -math.inf

@@ -25,7 +25,7 @@ SMOOTH_S = 0.05
 #: A contact lasts through a hole in the readings of up to this, s.
 MAX_HOLE_S = 1.0
 #: Time constant of the baseline at rest, s.
-BASELINE_S = 1.0
+BASELINE_S = 0.5
 #: After a contact so much of its largest change, and whatever is left of it, may go back by itself ...
 RECOVERY_PART = 0.2
 #: ... in about so long, s: silicone creeps back. Less than that, the other way, is no contact meanwhile.

@@ -1,0 +1,136 @@
+"""`skinfab contact`: on logs, on the simulator, the files it leaves, and the ways in which it is used wrongly."""
+
+import csv
+import json
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from calibration.contact_objects import OBJECTS
+from calibration.contact_simulator import simulate
+from skinfab.cli import contact
+from skinfab.cli.main import main
+from skinfab.readout.logs.log import write_log
+
+FILES = ["contact.png", "events.csv", "result.json", "table.csv"]
+
+
+@pytest.fixture
+def log(tmp_path: Path) -> Callable[..., str]:
+    def write(name: str = "a.csv", *, seed: int = 0, touched: float = 1.4) -> str:
+        time = np.arange(1500) / 100
+        rng = np.random.default_rng(seed)
+        first = 100 * np.where((time > 5) & (time < 8), touched, 1.0) + 0.4 * rng.standard_normal(1500)
+        second = 50 * np.where((time > 6) & (time < 9), 0.8, 1.0) + 0.2 * rng.standard_normal(1500)
+        rows = "\n".join(f"{t},{a:.3f},{b:.3f}," for t, a, b in zip(time.tolist(), first.tolist(), second.tolist(), strict=True))
+        (tmp_path / name).write_text(f"time,S1,S2,S3\n{rows}\n")
+        return str(tmp_path / name)
+
+    return write
+
+
+def rows(path: Path) -> list[dict[str, str]]:
+    return list(csv.DictReader(line for line in path.read_text().splitlines() if not line.startswith("#")))
+
+
+def test_the_names_are_the_objects() -> None:
+    assert tuple(OBJECTS) == contact.OBJECTS
+
+
+def test_trials_of_any_logger(log: Callable[..., str], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "out"
+    assert main(["contact", log(), log("b.csv", seed=1, touched=1.5), "-o", str(out), "--json"]) == 0
+    result = json.loads(capsys.readouterr().out)
+    assert sorted(each.name for each in out.iterdir()) == FILES and json.loads((out / "result.json").read_text()) == result
+    ((_, found),) = result["objects"].items()
+    assert not found["simulated"] and [each["log"] for each in found["trials"]] == ["a.csv", "b.csv"]
+    assert all(len(each["sha256"]) == 64 and each["contacts"] == 2 for each in found["trials"])
+    first, second, third = found["table"]
+    assert first["touched"] == pytest.approx(145, abs=0.5) and first["scatter"] == pytest.approx(10 / 2**0.5, abs=0.3)
+    assert second["change"] == pytest.approx(-0.2, abs=0.01) and third["r0"] is None
+    assert any("channel S3 never read anything" in note for note in result["notes"])
+    events = rows(out / "events.csv")
+    assert [(each["log"], each["channel"], each["sign"]) for each in events] == [
+        (name, channel, sign) for name in ("a.csv", "b.csv") for channel, sign in (("S1", "1"), ("S2", "-1"))
+    ]
+    assert float(events[0]["start_s"]) == pytest.approx(5, abs=0.05) and float(events[0]["end_s"]) == pytest.approx(8, abs=0.1)
+    assert len(rows(out / "table.csv")) == 3 and not (out / "events.csv").read_text().startswith("#")
+
+
+def test_words_for_people(log: Callable[..., str], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["contact", log(), "--channel", "S2", "-o", str(tmp_path / "o")]) == 0
+    said = capsys.readouterr()
+    assert "1 contacts in 1 trial" in said.out and "-20" in said.out and "S1" not in said.out and said.err == ""
+
+
+def test_fewer_false_alarms_ask_for_more(log: Callable[..., str], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    thresholds = []
+    for rate in ("5", "0.01"):
+        assert main(["contact", log(), "--false-alarms", rate, "-o", str(tmp_path / "o"), "--json"]) == 0
+        (found,) = json.loads(capsys.readouterr().out)["objects"].values()
+        thresholds.append(found["threshold_sigma"])
+    assert thresholds[0] < thresholds[1]
+
+
+def test_the_simulator_is_judged(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "out"
+    words = ["contact", "simulator", "--object", "grip", "--trials", "2", "--seed", "3", "-o", str(out)]
+    assert main([*words, "--json"]) == 0
+    result = json.loads(capsys.readouterr().out)
+    assert sorted(each.name for each in out.iterdir()) == sorted([*FILES, "truth.csv"])
+    assert set(result["evaluation"]) == {"grip", "all"} and result["objects"]["grip"]["simulated"]
+    ours = result["evaluation"]["grip"]["cusum"]
+    assert ours["recall"]["value"] > 0.9 and ours["precision"]["low"] > 0.8 and ours["trials"] == 2
+    assert ours["true"] == len(rows(out / "truth.csv"))
+    for name in ("events.csv", "truth.csv", "table.csv"):
+        assert (out / name).read_text().startswith("# simulated: true\n")
+    assert main(words) == 0
+    assert "grip (simulated):" in capsys.readouterr().out
+
+
+def test_a_simulated_log_stays_simulated(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    trial = simulate("cube", seed=1)
+    write_log(trial.recording, tmp_path / "cube.mcap")
+    assert main(["contact", str(tmp_path / "cube.mcap"), "-o", str(tmp_path / "o"), "--json"]) == 0
+    result = json.loads(capsys.readouterr().out)
+    assert result["objects"]["cube"]["simulated"] and "evaluation" not in result
+    assert (tmp_path / "o/events.csv").read_text().startswith("# simulated: true\n")
+    # Its channels' kind says what to watch.
+    other = replace(trial.recording.stream.channels[0], kind="strain")
+    stream = replace(trial.recording.stream, channels=(other, *trial.recording.stream.channels[1:]))
+    write_log(replace(trial.recording, stream=stream), tmp_path / "mixed.csv")
+    assert main(["contact", str(tmp_path / "mixed.csv"), "-o", str(tmp_path / "p")]) == 0
+    assert "S1" not in {each["channel"] for each in rows(tmp_path / "p/events.csv")}
+
+
+@pytest.mark.parametrize(
+    ("words", "status", "says"),
+    [
+        (["nowhere.csv"], 1, "nowhere.csv: No such file"),
+        (["LOG", "--channel", "S9"], 1, "no channel 'S9'"),
+        (["LOG", "--false-alarms", "0"], 2, "not a positive number"),
+        (["LOG", "--false-alarms", "1e9"], 1, "cannot be promised"),
+        (["LOG", "simulator"], 2, "stands alone"),
+        (["LOG", "--object", "cube"], 2, "--object is for the simulator"),
+        (["LOG", "--seed", "0"], 2, "--seed is for the simulator"),
+        (["simulator", "--object", "ball"], 2, "invalid choice"),
+        (["simulator", "--trials", "0"], 2, "no trial"),
+        (["simulator", "--channel", "S1"], 2, "--channel is for logs"),
+    ],
+)
+def test_wrong_usage(
+    words: list[str], status: int, says: str, log: Callable[..., str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    made = log()
+    assert main(["contact", *(made if word == "LOG" else word for word in words), "-o", str(tmp_path / "out")]) == status
+    said = capsys.readouterr()
+    assert says in said.err and said.out == "" and not (tmp_path / "out").exists()
+
+
+def test_a_log_that_is_too_short_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "short.csv").write_text("time,S1\n" + "".join(f"{k / 100},1.0\n" for k in range(20)))
+    assert main(["contact", str(tmp_path / "short.csv"), "-o", str(tmp_path / "out")]) == 1
+    assert "short.csv: 20 frames are too few" in capsys.readouterr().err
