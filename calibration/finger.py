@@ -10,14 +10,13 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from calibration.curve import Curve
 from calibration.play import Play
-from skinfab.errors import InputError
 from skinfab.readout.frame import Channel, Frame, Stream
 
 FloatArray = NDArray[np.float64]
@@ -84,41 +83,6 @@ class Plant:
     delay_s: float = 0.05
     low: float = 0.0
     high: float = 95.0
-
-    def without(self, term: str) -> Plant:
-        """The same with one of its `TERMS` left out.
-
-        Raises
-        ------
-        InputError
-            There is no such term.
-        """
-        if term == "lag":
-            return replace(self, lag_s=0.0)
-        if term == "delay":
-            return replace(self, delay_s=0.0)
-        if term == "stops":
-            return replace(self, low=-math.inf, high=math.inf)
-        return replace(self, sensor=sensor_without(self.sensor, term))
-
-
-def sensor_without(sensor: FingerSensor, term: str) -> FingerSensor:
-    """A sensor without its ``play``, its ``noise``, or its ``saturation`` beyond the range of its curve.
-
-    Raises
-    ------
-    InputError
-        It has no such term.
-    """
-    if term == "play":
-        return replace(sensor, play_deg=0.0)
-    if term == "noise":
-        return replace(sensor, noise=0.0)
-    raise InputError(f"the simulated finger has no term {term!r}; it has {', '.join(TERMS)}")
-
-
-#: What can be left out.
-TERMS = ("lag", "delay", "stops", "play", "noise")
 
 
 class Reader:
