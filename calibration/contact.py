@@ -166,7 +166,7 @@ class ContactDetector:
         self.alarm = alarm_for(false_alarms, channels=len(names), rate_hz=stream.rate_hz, still_frames=still)
         c = len(names)
         self._state, self._windows, self._effect = inner.fresh(c), np.zeros((c, still)), np.zeros(c, dtype=np.int64)
-        self._time = -math.inf
+        self._time, self._ended = -math.inf, list[Contact]()
         self._ready, self._frames = np.full(c, math.nan), 0
         self._masked, self._saturated = np.zeros(c, dtype=np.int64), np.zeros(c, dtype=np.int64)
         self._least, self._most = np.full(c, math.inf), np.full(c, -math.inf)
@@ -182,9 +182,13 @@ class ContactDetector:
 
     def run(self, recording: Recording) -> Detection:
         """All frames of a recording at once, the same as one by one; contacts that have not ended are among the result."""
-        edges = self._feed(recording.device_time, recording.values, recording.valid, recording.saturated)
-        contacts = [each for each in edges if not each.lasting] + self.lasting()
-        return Detection(tuple(sorted(contacts, key=lambda each: (each.start, each.channel))), self.health(), self.alarm, self.false_alarms)
+        self._feed(recording.device_time, recording.values, recording.valid, recording.saturated)
+        return self.found()
+
+    def found(self) -> Detection:
+        """All contacts so far, those that have not ended too."""
+        contacts = sorted([*self._ended, *self.lasting()], key=lambda each: (each.start, each.channel))
+        return Detection(tuple(contacts), self.health(), self.alarm, self.false_alarms)
 
     def lasting(self) -> list[Contact]:
         """The contacts that have not ended."""
@@ -237,6 +241,7 @@ class ContactDetector:
                     self._learn(j)
                 else:
                     edges.append(self._contact(j, ended=self._effect[j] == inner.ENDED))
+        self._ended += [each for each in edges if not each.lasting]
         return tuple(edges)
 
     def _learn(self, j: int) -> None:

@@ -46,7 +46,8 @@ def harder() -> Iterator[str]:
     yield "|---|---|---|---|"
     for name, sizes in HARDER.items():
         for size in sizes:
-            trials = [simulate(each, seed=seed, scene=replace(Scene(), **{name: size})) for each in OBJECTS for seed in SEEDS]
+            scene = replace(Scene(), **{name: size})  # type: ignore[arg-type]
+            trials = [simulate(each, seed=seed, scene=scene) for each in OBJECTS for seed in SEEDS]
             found = figures(judge(trials)["cusum"])
             yield f"| {name} {size:g} (made for {getattr(Scene(), name):g}) | {found.precision} | {found.recall} | {found.false_alarms} |"
 

@@ -1,4 +1,4 @@
-"""`skinfab contact LOG... -o DIR`, `skinfab contact simulator -o DIR`: when each sensor of a skin is touched."""
+"""`skinfab contact LOG...|PORT|simulator -o DIR`: when each sensor of a skin is touched."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from skinfab.cli import steps
+from skinfab.cli.record import baud
 
 if TYPE_CHECKING:
     from calibration.contact import Contact, Detection
@@ -46,7 +47,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "logs",
         metavar="LOG",
         nargs="+",
-        help=f"logs of one object, each a trial (CSV, MCAP, ROS bag, recording); or {SIMULATOR}: a simulated hand on the paper's objects",
+        help="logs of one object, each a trial (CSV, MCAP, ROS bag, recording); or a port such as /dev/ttyACM0, watched until Ctrl-C; "
+        f"or {SIMULATOR}: a simulated hand on the paper's objects",
     )
     p.add_argument(
         "--false-alarms",
@@ -64,6 +66,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     p.add_argument("--object", choices=(*OBJECTS, "all"), help=f"of the {SIMULATOR} (default: all)")
     p.add_argument("--trials", metavar="N", type=steps.seed, help=f"of the {SIMULATOR}, per object (default: 5)")
     p.add_argument("--seed", type=steps.seed, help=f"of the {SIMULATOR} (default: 0)")
+    p.add_argument("--seconds", metavar="S", type=steps.positive, help="of a port: end after so long (default: at Ctrl-C)")
+    p.add_argument("--baud", metavar="N", type=baud, help="of a port (default: 921600)")
     p.add_argument("-o", "--output", metavar="DIR", type=Path, required=True, help="folder for events, table, result and figure")
     p.add_argument("--json", action="store_true", help="print the result as one JSON object and nothing else")
     p.set_defaults(run=run, wrong_usage=p.error)
@@ -71,19 +75,13 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 def run(args: argparse.Namespace) -> int:
     """Find contacts, write them down, and say what was found."""
-    if SIMULATOR in args.logs:
-        if len(args.logs) > 1:
-            args.wrong_usage(f"{SIMULATOR} stands alone: it is no log among others")
-        if args.channel:
-            args.wrong_usage(f"--channel is for logs; the {SIMULATOR}'s channels are all contact sensors")
-        if args.trials == 0:
-            args.wrong_usage("--trials 0 is no trial")
-        sessions, notes, scores = _simulated(args)
+    kind = _kind(args)
+    scores: dict[str, dict[str, list[Score]]] = {}
+    if kind == SIMULATOR:
+        sessions, scores = _simulated(args)
+        notes: list[str] = []
     else:
-        if given := next((f"--{name}" for name in ("object", "trials", "seed") if getattr(args, name) is not None), None):
-            args.wrong_usage(f"{given} is for the {SIMULATOR}, not for logs")
-        sessions, notes = _logged(args)
-        scores = {}
+        sessions, notes = _watched(args) if kind == "port" else _logged(args)
     from calibration.contact_table import contact_table
 
     tables = {name: contact_table([(each.recording, each.found) for each in trials]) for name, trials in sessions.items()}
@@ -100,6 +98,35 @@ def run(args: argparse.Namespace) -> int:
         print(line)
     print(f"{args.output}: contact.png, events.csv, result.json, table.csv" + (", truth.csv" if scores else ""))
     return 0
+
+
+#: Options that not every kind of source has.
+_ONLY = {"object": SIMULATOR, "trials": SIMULATOR, "seed": SIMULATOR, "seconds": "port", "baud": "port"}
+
+
+def _kind(args: argparse.Namespace) -> str:
+    """What the contacts are to be found in; wrong usage where the words contradict each other."""
+    live = [word for word in args.logs if word == SIMULATOR or Path(word).is_char_device()]
+    if live and len(args.logs) > 1:
+        args.wrong_usage(f"{live[0]} stands alone: it is no log among others")
+    kind = "log" if not live else SIMULATOR if live[0] == SIMULATOR else "port"
+    for name, only in _ONLY.items():
+        if getattr(args, name) is not None and kind != only:
+            args.wrong_usage(f"--{name} is for the {only}, not for a {kind}")
+    if kind == SIMULATOR and args.channel:
+        args.wrong_usage(f"--channel is for logs and ports; the {SIMULATOR}'s channels are all contact sensors")
+    if args.trials == 0:
+        args.wrong_usage("--trials 0 is no trial")
+    return kind
+
+
+def _watched(args: argparse.Namespace) -> tuple[dict[str, list[Trial]], list[str]]:
+    from skinfab.cli.contact_port import watch_port
+
+    recording, found, notes = watch_port(
+        args.logs[0], baud=args.baud, seconds=args.seconds, false_alarms=args.false_alarms, channels=args.channel
+    )
+    return {recording.stream.name: [Trial(recording.stream.name, "", recording, found)]}, notes
 
 
 def _logged(args: argparse.Namespace) -> tuple[dict[str, list[Trial]], list[str]]:
@@ -123,7 +150,7 @@ def _logged(args: argparse.Namespace) -> tuple[dict[str, list[Trial]], list[str]
     return {trials[0].recording.stream.name or trials[0].name: trials}, notes
 
 
-def _simulated(args: argparse.Namespace) -> tuple[dict[str, list[Trial]], list[str], dict[str, dict[str, list[Score]]]]:
+def _simulated(args: argparse.Namespace) -> tuple[dict[str, list[Trial]], dict[str, dict[str, list[Score]]]]:
     from calibration.contact import detect
     from calibration.contact_simulator import simulate
     from calibration.contact_study import judge
@@ -143,7 +170,7 @@ def _simulated(args: argparse.Namespace) -> tuple[dict[str, list[Trial]], list[s
             ]
             scores[name] = judge(made, false_alarms=args.false_alarms)
         progress(1.0, "done")
-    return sessions, [], scores
+    return sessions, scores
 
 
 def _facts(

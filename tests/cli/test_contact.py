@@ -9,11 +9,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from calibration.contact import detect
 from calibration.contact_objects import OBJECTS
 from calibration.contact_simulator import simulate
 from skinfab.cli import contact
 from skinfab.cli.main import main
+from skinfab.readout.frame import Recording
 from skinfab.readout.logs.log import write_log
+from skinfab.readout.pty_server import PtyServer
 
 FILES = ["contact.png", "events.csv", "result.json", "table.csv"]
 
@@ -119,6 +122,8 @@ def test_a_simulated_log_stays_simulated(tmp_path: Path, capsys: pytest.CaptureF
         (["simulator", "--object", "ball"], 2, "invalid choice"),
         (["simulator", "--trials", "0"], 2, "no trial"),
         (["simulator", "--channel", "S1"], 2, "--channel is for logs"),
+        (["LOG", "--seconds", "3"], 2, "--seconds is for the port, not for a log"),
+        (["simulator", "--baud", "9600"], 2, "--baud is for the port, not for a simulator"),
     ],
 )
 def test_wrong_usage(
@@ -134,3 +139,25 @@ def test_a_log_that_is_too_short_is_named(tmp_path: Path, capsys: pytest.Capture
     (tmp_path / "short.csv").write_text("time,S1\n" + "".join(f"{k / 100},1.0\n" for k in range(20)))
     assert main(["contact", str(tmp_path / "short.csv"), "-o", str(tmp_path / "out")]) == 1
     assert "short.csv: 20 frames are too few" in capsys.readouterr().err
+
+
+def test_a_port_is_watched_and_told_as_it_comes(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    log = simulate("grip", seed=2).recording
+    short = [log.frame(k) for k in range(900)]
+    out = tmp_path / "out"
+    with PtyServer(log.stream, short, rate_hz=600) as server:
+        assert main(["contact", str(server.path), "--seconds", "3", "-o", str(out)]) == 0
+    said = capsys.readouterr()
+    assert "contact: 4." in said.err and "S1 touched, +" in said.err and "S1 let go after" in said.err
+    assert "grip (simulated):" in said.out and sorted(each.name for each in out.iterdir()) == FILES
+    there = detect(Recording.of_frames(log.stream, short)).contacts
+    events = rows(out / "events.csv")
+    assert [each["channel"] for each in events] == [each.channel for each in there]
+    assert [float(each["start_s"]) for each in events] == pytest.approx([each.start for each in there], abs=0.03)
+
+
+def test_a_port_that_sends_nothing_is_an_error(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    stream = simulate("grip", seed=2).recording.stream
+    with PtyServer(stream, []) as server:
+        assert main(["contact", str(server.path), "--seconds", "0.3", "-o", str(tmp_path / "out")]) == 1
+    assert "sent no frame" in capsys.readouterr().err and not (tmp_path / "out").exists()
