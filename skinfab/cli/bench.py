@@ -16,6 +16,7 @@ NAMES = {
     "gcode": "arcs and chord tolerances against file size, deviation and time",
     "calibrate": "models and degrees of a strain calibration against held-out error and time",
     "control": "gain, delay and period against the error of a controlled joint",
+    "readout": "framing and byte errors against frames lost and wrong in silence",
 }
 
 #: Where its `run` is, and whether it takes --sizes.
@@ -25,6 +26,7 @@ MODULES = {
     "gcode": ("gcode.bench", False),
     "calibrate": ("calibration.bench", False),
     "control": ("calibration.bench_control", False),
+    "readout": ("skinfab.bench.readout", False),
 }
 
 
