@@ -7,7 +7,9 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1]
-PAGES = [ROOT / "docs" / name for name in ("cuts.md", "flattening.md", "calibration.md", "logs.md")]  # patterns.md has its own test
+PAGES = [
+    ROOT / "docs" / name for name in ("cuts.md", "flattening.md", "calibration.md", "logs.md", "readout.md")
+]  # patterns.md has its own test
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
