@@ -1,6 +1,8 @@
 """skinfab record as it is called: a simulator, a port, Ctrl-C, and what cannot be."""
 
+import io
 import json
+import re
 import signal
 import subprocess
 import sys
@@ -45,6 +47,25 @@ def test_lines_without_a_checksum_are_said(tmp_path: Path, capsys: pytest.Captur
     with PtyServer(STREAM, strain_frames(STREAM), ascii_lines=True) as device:
         assert main(["record", str(device.path), "-o", str(tmp_path / "a.csv"), "--seconds", "0.5"]) == 0
     assert "without a checksum" in capsys.readouterr().err
+
+
+class Terminal(io.StringIO):
+    def isatty(self) -> bool:
+        return True
+
+
+def test_on_a_terminal_it_is_said_how_it_goes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "stderr", terminal := Terminal())
+    assert main(["record", "simulator", "-o", str(tmp_path / "a.frames"), "--seconds", "1.3"]) == 0
+    first, *_, last = terminal.getvalue().split("\r\x1b[K")[1:]
+    assert re.fullmatch(
+        r"0:01  \d+ frames  \d+\.\d Hz  0\.\d MB  lost 0  bad 0  late 0  disk [\d.]+ GB left, (\d+ days|for ever|[\d:]+)  \(Ctrl-C ends\)",
+        first,
+    )
+    assert last == ""  # the line is gone when it is over
+    monkeypatch.setattr(sys, "stderr", terminal := Terminal())
+    assert main(["record", "simulator", "-o", str(tmp_path / "b.frames"), "--seconds", "0.1", "--json"]) == 0
+    assert terminal.getvalue() == ""
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])

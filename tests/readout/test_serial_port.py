@@ -1,5 +1,6 @@
 """A real serial port's path, over a pseudo-terminal: rates, garbage, lost bytes, a cable that is pulled, clocks that step."""
 
+import errno
 import itertools
 import time
 from collections.abc import Iterator
@@ -7,8 +8,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import serial
 
 from skinfab.errors import InputError
+from skinfab.readout import serial_port
 from skinfab.readout.faults import Faults
 from skinfab.readout.frame import Frame, Stream
 from skinfab.readout.packets import FRAME_64
@@ -214,6 +217,30 @@ def test_a_port_that_cannot_be_used_is_one_line(tmp_path: Path) -> None:
     silent = PtyServer(STREAM, iter(()))
     with silent, pytest.raises(InputError, match=r"sent nothing for 0\.2 s"):
         SerialPort(silent.path, described_s=0.2).open()
+
+
+def test_a_port_without_permission_says_how_to_get_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refused(port: str, baud: int) -> None:
+        raise serial.SerialException(errno.EACCES, "could not open port")
+
+    monkeypatch.setattr(serial_port, "_opened", refused)
+    with pytest.raises(InputError, match="sudo adduser"):
+        SerialPort("/dev/ttyACM0").open()
+
+
+def test_a_fault_in_the_reading_thread_reaches_who_reads(monkeypatch: pytest.MonkeyPatch) -> None:
+    with PtyServer(STREAM, strain_frames(STREAM)) as device, SerialPort(device.path) as port:
+        assert port.read(PATIENCE_S) is not None
+
+        def broken(counter: int) -> int:
+            raise MemoryError
+
+        monkeypatch.setattr(port._order, "place", broken)
+        with pytest.raises(MemoryError):
+            for _ in port:
+                pass
+        with pytest.raises(MemoryError):
+            port.read_latest(1.0)
 
 
 def test_what_cannot_be_understood_is_one_line() -> None:
