@@ -85,5 +85,5 @@ def test_spikes_that_are_not_finite_are_left_out() -> None:
 def test_a_log_of_one_cycle_is_not_overfitted_in_silence() -> None:
     angle = 45 - 40 * np.cos(2 * np.pi * TIME / 32)
     reading = 1 + 2e-3 * angle
-    with pytest.raises(InputError, match="hardly ever (rise|fall)"):
+    with pytest.raises(InputError, match=r"hardly ever (rise|fall)"):
         calibrate(prepare(table(angle, reading), signal="U", angle="angle", limits=(10, 80)), model="branches")
