@@ -6,29 +6,55 @@ import re
 
 #: A word: its letter and its number.
 _WORD = re.compile(r"\s*([A-Z])\s*([-+]?(?:\d+\.?\d*|\.\d+))", re.IGNORECASE)
-#: Two codes, or one that is not the first word.
-_BLOCK = re.compile(r"[GM]\s*\d.*[GM]\s*\d|^(?:N\d+\s*)?[EFIJKRSXYZ].*[GM]\s*\d", re.IGNORECASE)
+#: A line of one motion or dwell at its start, or of words alone: nothing to part.
+_SINGLE = re.compile(r"(?:N\d+\s*)?(?:G\s*0*[0-4](?![\d.]))?[^GMTN]*", re.IGNORECASE)
 
-_PUMP = {"M3", "M4", "M5"}
-#: Codes that take the line's places, arcs and times; a line has one of them at most.
-_TAKE_AXES = {"G0", "G1", "G2", "G3", "G4", "G10", "G28", "G30", "G38", "G92"}
-_ENDING = {"M0", "M1", "M2", "M30"}
+_PUMP = ("M3", "M4", "M5")
+_ENDING = ("M0", "M1", "M2", "M30")
+#: Codes that take the line's places, arcs and times.
+_TAKE_AXES = {"G0", "G1", "G2", "G3", "G4", "G10", "G28", "G30", "G38.2", "G38.3", "G38.4", "G38.5", "G43.1", "G92"}
+#: Of each of these GRBL takes one a line (NIST IR 6556, table 4): two are its error 21.
+_MODAL_GROUPS = (
+    (*_TAKE_AXES, "G80"),
+    ("G17", "G18", "G19"),
+    ("G20", "G21"),
+    ("G43.1", "G49"),
+    ("G54", "G55", "G56", "G57", "G58", "G59"),
+    ("G90", "G91"),
+    ("G93", "G94"),
+    _PUMP,
+    _ENDING,
+)
+#: Codes that may stand beside others; a line with any other one is left as it is, for its words may be that code's own.
+_KNOWN = {code for group in _MODAL_GROUPS for code in group} | {
+    "G28.1",
+    "G30.1",
+    "G40",
+    "G53",
+    "G61",
+    "G91.1",
+    "G92.1",
+    "M6",
+    "M7",
+    "M8",
+    "M9",
+}
 
 
 def parted(body: str) -> list[str]:
     """A line without its comment, as lines of one code each; a line that is no such block comes back as it is.
 
-    RS-274 (NIST IR 6556, table 8) sets the feed first, then turns the spindle, then units, planes and modes, then moves,
-    and stops last.
+    The pump turns first, then units, planes and modes are set, then F, then the head moves, by the last motion where the
+    line names none, and what stops comes last. Words that only number the line are left out.
 
     Examples
     --------
     >>> parted("G21 G17 G90 G94"), parted("G90 G1 X2 F100 M3 S5")
     (['G21', 'G17', 'G90', 'G94'], ['M3S5', 'G90', 'G1X2F100'])
-    >>> parted("X1 Y2 G91 M2"), parted("G1 X1")
-    (['G91', 'X1Y2', 'M2'], ['G1 X1'])
+    >>> parted("X1 Y2 G91 M2"), parted("G1 X1"), parted("G21 F300")
+    (['G91', 'X1Y2', 'M2'], ['G1 X1'], ['G21', 'F300'])
     """
-    if not _BLOCK.search(body):
+    if _SINGLE.fullmatch(body) and body[0] not in "nN":
         return [body]
     words, at = [], 0
     while at < len(body):
@@ -37,17 +63,20 @@ def parted(body: str) -> list[str]:
             return [body]  # let the reader say what is wrong with it
         words.append((found[1].upper(), found[2]))
         at = found.end()
-    if words[0][0] == "N":
-        words = words[1:]
-    codes = [f"{letter}{float(number):g}" for letter, number in words if letter in "GM"]
-    taking = [code for code in codes if code.partition(".")[0] in _TAKE_AXES]
-    if not codes or len(taking) > 1 or len(set(codes)) < len(codes):
+    words = words[1:] if words[0][0] == "N" else words
+    codes = [f"{letter}{float(number):g}" for letter, number in words if letter in "GMT"]
+    known = all(code[0] == "T" or code in _KNOWN for code in codes) and {letter for letter, _ in words} <= set("GMTXYZIJKREFSPL")
+    own_words = set(codes).isdisjoint(_TAKE_AXES) and any(letter in "PLERK" for letter, _ in words)
+    if not known or own_words or any(sum(code in group for code in codes) > 1 for group in _MODAL_GROUPS) or len(set(codes)) < len(codes):
         return [body]
-    pump = [code for code in codes if code in _PUMP]
-    rest = [(letter, number) for letter, number in words if letter not in "GM"]
-    rate = "".join(letter + number for letter, number in rest if letter == "S" and pump)
-    moved = "".join(letter + number for letter, number in rest if not (letter == "S" and pump))
-    settings = [code for code in codes if code not in (*_PUMP, *_ENDING, *taking)]
-    last = [code for code in codes if code in _ENDING]
-    motion = [taking[0] + moved] if taking else [moved] if moved else []
-    return [*(code + (rate if k == 0 else "") for k, code in enumerate(pump)), *settings, *motion, *last]
+    taking, pump, last = ([code for code in codes if code in group] for group in (_TAKE_AXES, _PUMP, _ENDING))
+    settings = [code for code in codes if code not in (*taking, *pump, *last)]
+    own = [letter + number for letter, number in words if letter not in "GMT" and not (pump and letter == "S")]
+    rate = [letter + number for letter, number in words if pump and letter == "S"]
+    moved = taking + own
+    if not taking:
+        # F is set in the units of its own line.
+        feed = [word for word in own if word[0] in "FS"]
+        axes = [word for word in own if word[0] not in "FS"]
+        moved = own if axes else feed
+    return [*("".join([code, *rate]) for code in pump), *settings, *(["".join(moved)] if moved else []), *last]

@@ -20,10 +20,10 @@ KNOWN = frozenset(
     for number in numbers.split()
 )
 
-#: G54 is no fault: it is the origin that G10 L20 P1 sets, and the one after a reset.
+#: G54 is no fault: it is the origin that G10 L20 P1 sets, and the one after a reset. Nor is G49, which ends what only G43.1 begins.
 PLACES = ("G28", "G30")
 PROBES = ("G38.2", "G38.3", "G38.4", "G38.5")
-OFFSETS = ("G10", "G28.1", "G30.1", "G43.1", "G49", "G55", "G56", "G57", "G58", "G59", "G92", "G92.1")
+OFFSETS = ("G10", "G28.1", "G30.1", "G43.1", "G55", "G56", "G57", "G58", "G59", "G92", "G92.1")
 
 
 def grbl_findings(judged: Trace) -> Iterator[Finding]:
@@ -47,6 +47,8 @@ def _fault(command: Command) -> tuple[str, str] | None:
         if "E" in unknown:
             return f"GRBL has no E axis and halts at {code} E", "let M3 S run the pump, or choose a Marlin printer"
         return (f"GRBL does not know {unknown} on {code} and halts there", "take it out") if unknown else None
+    if code[0] == "T":
+        return None  # a tool's number is kept and nothing done; changing it, M6, is not known
     if code not in KNOWN:
         return f"GRBL does not know {code} and halts there", "take it out"
     if code in PROBES:

@@ -119,13 +119,17 @@ def work_steps(
 
 
 def _by_hand(corner: tuple[float, float], *, first: bool) -> str:
-    """GRBL's way: homed while nothing can be hit, and the bed's corner told; both outlast a reset."""
+    """GRBL's way: homed while nothing can be hit, and the bed's corner told. What G10 stored outlasts the power, homing does not."""
     if not first:
-        return "do not home again, for $H moves Z too; the places set for the first piece still hold"
+        return (
+            "while the bed is still empty, home with $H once more if the controller was switched off, reset or bumped; the places that G10 "
+            "stored for the first piece still hold"
+        )
     x, y = corner
     return (
         "home with $H while the bed is empty, for it moves Z too. Jog the nozzle over the bed's front left corner and send "
-        f"G10 L20 P1 X{x:g} Y{y:g}: from then on the controller shows the places named here (a reset forgets G92, not G10)"
+        f"G10 L20 P1 X{x:g} Y{y:g}: from then on the controller shows the places named here (a reset forgets G92, not G10). $1=255 keeps the "
+        "motors on, so that no touch shifts the head"
     )
 
 

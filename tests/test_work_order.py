@@ -86,7 +86,7 @@ def test_grbl_is_homed_once_and_told_its_places_by_offsets() -> None:
     steps = work_steps(WEIGHED, MATERIAL, jobs=JOBS, home="none", bed_corner=(-5.0, 0.0))
     text = " ".join(steps)
     assert text.count("home with $H while the bed is empty") == 1 and "G10 L20 P1 X-5 Y0" in text
-    assert text.count("do not home again") == len(JOBS) - 1 and "G92 Z" not in text
+    assert text.count("home with $H once more if the controller was switched off") == len(JOBS) - 1 and "G92 Z" not in text
     assert text.count("G10 L20 P1 Z-") == len(JOBS)
 
 

@@ -19,9 +19,21 @@ GRBL = load_printer("generic-grbl")
         ("G21 M5", ["M5", "G21"]),
         ("M5 M2", ["M5", "M2"]),
         ("X5 Y5 F600 G1", ["G1X5Y5F600"]),
-        ("G91 X1", ["G91 X1"]),  # one code: the reader's own
+        ("G91 X1", ["G91", "X1"]),
+        ("G90 X0 Y0 F300", ["G90", "X0Y0F300"]),
+        ("M3 S240 F300", ["M3S240", "F300"]),
+        ("M5 X400", ["M5", "X400"]),
+        ("G20 F3", ["G20", "F3"]),
+        ("T1 M6", ["T1", "M6"]),
+        ("N10", []),
+        ("n5 g1 x1", ["G1x1".upper()]),
+        ("G1 X1", ["G1 X1"]),
+        ("X1", ["X1"]),
         ("G1 X1 G0 Y1", ["G1 X1 G0 Y1"]),  # two that move: a fault of the line
         ("G90 G90", ["G90 G90"]),
+        ("G90 G91 G0 X1", ["G90 G91 G0 X1"]),  # two of a modal group: GRBL halts there
+        ("M3 M5", ["M3 M5"]),
+        ("G0 G80", ["G0 G80"]),
         ("G90 what G21", ["G90 what G21"]),
     ],
 )
@@ -35,6 +47,23 @@ def test_grbl_follows_a_block_as_its_parts() -> None:
     one, two = trace(block, spindle=GRBL.spindle), trace(single, spindle=GRBL.spindle)
     assert [(m.start, m.end, m.e, m.speed) for m in one.moves] == [(m.start, m.end, m.e, m.speed) for m in two.moves]
     assert [m.line for m in one.moves] == [2, 3, 4]
+
+
+@pytest.mark.parametrize("line", ["G90 X400", "G17 X400", "G94 X400", "M5 X400", "G21 Y5 X400"])
+def test_the_motion_of_a_line_of_modes_is_judged(line: str) -> None:
+    text = f"G21\nG90\nG0 Z10\nG1 X5 Y5 F600\n{line}\nG1 X10\n"
+    assert any("X400" in str(f) and f.line == 5 for f in judge(text, GRBL).findings)
+
+
+def test_what_grbl_takes_on_any_line_is_no_fault() -> None:
+    text = "N1\nG21 G90 G40 G49 G80\nT1\nG0 Z10 F600\nG1 X5 Y5\nG21 F300\nG1 X6\n"
+    found = judge(text, GRBL)
+    assert not found.broken_off and not [f for f in found.findings if f.line < 7]
+
+
+@pytest.mark.parametrize("line", ["G90 G91 G0 X1", "G20 G21", "M3 M5"])
+def test_two_of_a_modal_group_break_it_off(line: str) -> None:
+    assert "line 2: a second" in str(judge(f"G21\n{line}\n", GRBL).broken_off)
 
 
 def test_marlin_does_not_read_blocks() -> None:

@@ -36,7 +36,7 @@ def test_a_foreign_file_of_modal_lines_is_judged_as_its_long_form() -> None:
         ("G55", "G55 moves the origin"),
         ("G28", "G28 goes to a place stored"),
         ("G38.2 Z-5", "G38.2 probes"),
-        ("T1", "GRBL does not know T1"),
+        ("M6", "GRBL does not know M6"),
         ("M84", "GRBL does not know M84"),
         ("G93", "G93 reads F as one over a time"),
     ],
