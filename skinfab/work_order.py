@@ -128,8 +128,8 @@ def _by_hand(corner: tuple[float, float], *, first: bool) -> str:
     x, y = corner
     return (
         "home with $H while the bed is empty, for it moves Z too. Jog the nozzle over the bed's front left corner and send "
-        f"G10 L20 P1 X{x:g} Y{y:g}: from then on the controller shows the places named here (a reset forgets G92, not G10). $1=255 keeps the "
-        "motors on, so that no touch shifts the head"
+        f"G10 L20 P1 X{x:g} Y{y:g}: from then on the controller shows the places named here (a reset forgets G92, not G10). $1=255 "
+        "keeps the motors on, so that no touch shifts the head"
     )
 
 
