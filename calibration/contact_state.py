@@ -16,8 +16,10 @@ NOTHING, WINDOW_FULL, STARTED, ENDED = 0, 1, 2, 3
 
 #: A contact ends where less than this part of its largest change is left: far from the noise, and from what drifted meanwhile.
 END_PART = 0.3
-#: ... and goes on as another one where the change comes back to this part before the reading has settled.
+#: ... and goes on as another one where the change comes back to this part before the reading has settled, and to the
+#: shift that the detector is made for, in standard deviations.
 AGAIN_PART = 0.5
+SHIFT = 2 * ALLOWANCE
 #: After a contact the baseline is set anew, once the reading had this long to settle, s.
 SETTLE_S = 0.3
 #: Changes under contact are smoothed by this, s.
@@ -30,6 +32,8 @@ BASELINE_S = 0.5
 RECOVERY_PART = 0.2
 #: ... in about so long, s: silicone creeps back. Less than that, the other way, is no contact meanwhile.
 RECOVERY_S = 10.0
+#: ... and no faster than all of it in this time, s: what goes faster is a touch.
+CREEP_S = 0.3
 
 #: What is known of one channel.
 STATE = np.dtype(
@@ -40,6 +44,8 @@ STATE = np.dtype(
         ("baseline", np.float64),
         ("rise", np.float64),  # how far the reading may yet go by itself after a contact, up ...
         ("fall", np.float64),  # ... and down
+        ("pace", np.float64),  # how fast, 1/s; and when it last did
+        ("moved", np.float64),
         ("up", np.float64),  # cumulative sums, and since when they are above zero
         ("down", np.float64),
         ("up_since", np.float64),
@@ -126,19 +132,29 @@ def _step(s, window, now, dt, x, valid, saturated, threshold, cap):  # type: ign
             return ENDED
         return NOTHING
     sign = 1.0 if s.change > 0 else -1.0
-    if abs(s.change) >= max(AGAIN_PART * s.peak, ALLOWANCE * s.noise, s.rise if sign > 0 else s.fall):
+    if abs(s.change) >= max(AGAIN_PART * s.peak, SHIFT * s.noise, s.rise if sign > 0 else s.fall):
         _start(s, now, sign)
         return STARTED
     if now - s.end >= SETTLE_S:
-        # Back to where it was, for a finger may still be on it, or by what silicone creeps.
-        s.baseline += s.change
-        s.rise, s.fall = max(-s.change, 0.0), max(s.change, 0.0)
-        if s.sign > 0:
-            s.fall = max(s.fall, RECOVERY_PART * s.peak)
-        else:
-            s.rise = max(s.rise, RECOVERY_PART * s.peak)
+        _anchor(s, now)
         _rest(s)
     return NOTHING
+
+
+@njit(cache=True)
+def _anchor(s, now):  # type: ignore[no-untyped-def]
+    """Set the baseline where the reading came to rest, and say how far it may go from there by itself."""
+    creep = RECOVERY_PART * s.peak
+    back = s.sign * s.change
+    s.baseline += s.change
+    s.rise, s.fall = max(-s.change, 0.0), max(s.change, 0.0)
+    if s.sign > 0:
+        s.fall = max(s.fall, creep)
+    else:
+        s.rise = max(s.rise, creep)
+    # Silicone takes its time. What is more than that, or less than nothing, is a finger that is still on it.
+    s.pace = creep / CREEP_S if 0.0 <= back <= creep else np.inf
+    s.moved = now
 
 
 @njit(cache=True)
@@ -152,13 +168,14 @@ def _watch(s, now, dt, x, threshold, cap):  # type: ignore[no-untyped-def]
     s.up = max(0.0, s.up + min(z, cap) - ALLOWANCE)
     s.down = max(0.0, s.down + min(-z, cap) - ALLOWANCE)
     alarm = 1.0 if s.up >= threshold else -1.0 if s.down >= threshold else 0.0
-    if alarm > 0 and s.rise > s.noise:  # silicone recovers, nothing touches it
-        step = min(s.rise, ALLOWANCE * s.noise)
-        s.baseline, s.rise, s.up = s.baseline + step, s.rise - step, 0.0
-        return NOTHING
-    if alarm < 0 and s.fall > s.noise:
-        step = min(s.fall, ALLOWANCE * s.noise)
-        s.baseline, s.fall, s.down = s.baseline - step, s.fall - step, 0.0
+    left = s.rise if alarm > 0 else s.fall
+    step = min(left, ALLOWANCE * s.noise)
+    if alarm != 0.0 and left > s.noise and step <= s.pace * (now - s.moved):  # silicone recovers, nothing touches it
+        s.baseline, s.moved, s.up, s.down = s.baseline + alarm * step, now, 0.0, 0.0
+        if alarm > 0:
+            s.rise -= step
+        else:
+            s.fall -= step
         return NOTHING
     if alarm != 0.0:
         s.change = x - s.baseline

@@ -1,4 +1,4 @@
-"""How good the detector is on five objects and five seeds, and that the usual ways are worse on the same trials."""
+"""How good the detector is on seeds that it was not made with, and that the usual ways are worse on the same trials."""
 
 import pytest
 
@@ -10,7 +10,7 @@ from calibration.contact_study import DETECTORS, figures, judge
 
 @pytest.fixture(scope="module")
 def scores() -> dict[str, list[Score]]:
-    return judge([simulate(name, seed=seed) for name in OBJECTS for seed in range(5)])
+    return judge([simulate(name, seed=seed) for name in OBJECTS for seed in range(200, 205)])
 
 
 def test_precision_recall_and_false_alarms(scores: dict[str, list[Score]]) -> None:
@@ -18,7 +18,7 @@ def test_precision_recall_and_false_alarms(scores: dict[str, list[Score]]) -> No
     assert ours.precision.low > 0.94 and ours.recall.low > 0.95, (ours.precision, ours.recall)
     assert ours.false_alarms.low <= 0.1 and ours.sign > 0.99
     assert 0 < ours.start_s < 0.05 and ours.end_p95_s < 0.1
-    assert (ours.true, ours.trials) == (805, 25)
+    assert ours.true > 750 and ours.trials == 25
 
 
 def test_the_usual_ways_are_worse(scores: dict[str, list[Score]]) -> None:

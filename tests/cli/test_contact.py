@@ -156,8 +156,8 @@ def test_a_port_is_watched_and_told_as_it_comes(tmp_path: Path, capsys: pytest.C
     assert [float(each["start_s"]) for each in events] == pytest.approx([each.start for each in there], abs=0.03)
 
 
-def test_a_port_that_sends_nothing_is_an_error(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    stream = simulate("grip", seed=2).recording.stream
-    with PtyServer(stream, []) as server:
-        assert main(["contact", str(server.path), "--seconds", "0.3", "-o", str(tmp_path / "out")]) == 1
+def test_a_port_without_a_frame_in_time_is_an_error(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    log = simulate("grip", seed=2).recording
+    with PtyServer(log.stream, (log.frame(k) for k in range(300)), rate_hz=300) as server:
+        assert main(["contact", str(server.path), "--seconds", "1e-9", "-o", str(tmp_path / "out")]) == 1
     assert "sent no frame" in capsys.readouterr().err and not (tmp_path / "out").exists()
