@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import sys
+import threading
 from contextlib import contextmanager
 from dataclasses import asdict
 from pathlib import Path
@@ -67,18 +68,8 @@ def run(args: argparse.Namespace) -> int:
 
     require_new(args.output)
     with _source(args) as source, Recorder(args.output, source.stream) as recorder:
-        states: list[State] = []
-        try:
-            with _shown(quiet=args.json, counts=lambda: source.counts) as show:
-
-                def told(state: State) -> None:
-                    states[:] = [state]
-                    show(state)
-
-                record(source, recorder, seconds=args.seconds, told=told)
-        except KeyboardInterrupt:
-            _taken()
-        recorder.sync()
+        with _shown(quiet=args.json, counts=lambda: source.counts) as show, _ended_by_signals() as stop:
+            record(source, recorder, seconds=args.seconds, told=show, stop=stop)
         counts = asdict(source.counts)
     result: dict[str, Any] = {
         "file": str(args.output),
@@ -108,11 +99,22 @@ def _source(args: argparse.Namespace) -> SerialPort | PacedFrames:
     return SerialPort(args.port, baud=args.baud or BAUD)
 
 
-def _taken() -> None:
-    """Ctrl-C is the way to end a recording: it has got through, and is not to come a second time."""
+@contextmanager
+def _ended_by_signals() -> Iterator[threading.Event]:
+    """Ctrl-C is the way to end a recording: it ends it between two frames, not in the midst of one."""
     import signal
 
-    signal.setitimer(signal.ITIMER_REAL, 0)
+    stop = threading.Event()
+    before = {s: signal.getsignal(s) for s in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)}
+    # What is ignored (nohup) stays so; and only the main thread may say what a signal does.
+    ours = [s for s, handler in before.items() if callable(handler) and threading.current_thread() is threading.main_thread()]
+    try:
+        for s in ours:
+            signal.signal(s, lambda number, frame: stop.set())
+        yield stop
+    finally:
+        for s in ours:
+            signal.signal(s, before[s])
 
 
 @contextmanager

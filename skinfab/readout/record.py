@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import shutil
+import threading
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -168,7 +169,14 @@ def require_new(path: str | Path) -> Path:
     return path
 
 
-def record(source: Source, recorder: Recorder, *, seconds: float | None = None, told: Callable[[State], None] | None = None) -> None:
+def record(
+    source: Source,
+    recorder: Recorder,
+    *,
+    seconds: float | None = None,
+    told: Callable[[State], None] | None = None,
+    stop: threading.Event | None = None,
+) -> None:
     """Record an open source until it ends, or for so many seconds.
 
     Parameters
@@ -179,6 +187,8 @@ def record(source: Source, recorder: Recorder, *, seconds: float | None = None, 
         By the clock, whether or not frames come.
     told : callable, optional
         Called every second, and at the end.
+    stop : threading.Event, optional
+        Ends the recording between two frames, within a quarter of a second.
 
     Raises
     ------
@@ -196,7 +206,7 @@ def record(source: Source, recorder: Recorder, *, seconds: float | None = None, 
             told(State(now - began, recorder.frames, recorder.bytes, rate, shutil.disk_usage(recorder.path.parent).free))
         last, before = now, recorder.frames
 
-    while True:
+    while stop is None or not stop.is_set():
         now = time.monotonic()
         left = float("inf") if seconds is None else began + seconds - now
         if left <= 0:

@@ -7,6 +7,7 @@ import random
 import signal
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 
@@ -181,6 +182,15 @@ def test_a_source_that_ends_ends_the_recording(tmp_path: Path) -> None:
     with PacedFrames(STREAM, lambda: each, in_time=False) as source, Recorder(tmp_path / "a.frames", STREAM) as recorder:
         record(source, recorder)
     assert len(read_recording(tmp_path / "a.frames")) == 20
+
+
+def test_it_can_be_told_to_stop_and_does_so_between_two_frames(tmp_path: Path) -> None:
+    stop = threading.Event()
+    timer = threading.Timer(0.3, stop.set)
+    with simulated_strain(channels=2, rate_hz=500.0) as source, Recorder(tmp_path / "a.frames", source.stream) as recorder:
+        timer.start()
+        record(source, recorder, stop=stop)
+    assert len(read_recording(tmp_path / "a.frames")) == recorder.frames == source.counts.frames > 50
 
 
 def test_a_device_that_is_silent_does_not_hold_the_recording_beyond_its_time(tmp_path: Path) -> None:
