@@ -94,6 +94,8 @@ def _calibration(path: Path | None) -> SensorCalibration | None:
 
 
 def _serve(source: Replay) -> int:
+    import time
+
     from skinfab.readout.packets import FRAME_64
     from skinfab.readout.pty_server import PtyServer
 
@@ -101,8 +103,9 @@ def _serve(source: Replay) -> int:
     with source, PtyServer(source.stream, source, rate_hz=0, kind=FRAME_64) as server:
         print(server.path, flush=True)
         steps.say([f"{len(source.stream.channels)} channels on {server.path}; it begins when the port is opened"])
-        while not server.wait(0.2):
-            pass
+        # Python 3.11 takes a thread for ended if an interrupt comes while one waits for it: wait beside it.
+        while not server.wait(0):
+            time.sleep(0.1)
     print(f"{server.sent} frames sent")
     return 0
 

@@ -3,6 +3,7 @@
 import csv
 import json
 import math
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -129,3 +130,15 @@ def test_served_over_a_pseudo_terminal(tmp_path: Path) -> None:
         rest = process.communicate(timeout=20)[0]
     assert process.returncode == 0 and "300 frames sent" in rest
     assert np.array_equal(np.array(got), short.values)
+
+
+def test_serving_can_be_interrupted(tmp_path: Path) -> None:
+    write_log(recording(), tmp_path / "a.mcap")
+    command = [sys.executable, "-m", "skinfab", "replay", str(tmp_path / "a.mcap"), "--serve"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        port = Path(process.stdout.readline().strip())
+        process.send_signal(signal.SIGTERM)  # as Ctrl-C, but not ignored where the tests run in the background
+        said = process.communicate(timeout=20)[1]
+    assert process.returncode == 130 and said.splitlines()[-1] == "skinfab: interrupted; nothing half-written was left"
+    assert "Traceback" not in said and not port.parent.exists()
