@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -74,10 +75,14 @@ def run_loop(source: Source, controller: JointController, send: Callable[[float]
     """
     clock = HostClock()
     period = 1 / (source.stream.rate_hz or RATE_HZ)
-    began = time.monotonic()
     rows: list[tuple[float, int, float]] = []
     commands: list[Command] = []
     passed, last = 0, -1
+    # All that there is by now stays: the collector need not walk it in the midst of the loop, which takes it 50 ms.
+    gc.collect()
+    gc.freeze()
+    time.sleep(period)  # whoever reads the source in a thread of its own stood still meanwhile, and catches up
+    began = time.monotonic()
     try:
         while time.monotonic() < began + seconds:
             frame = _newest(source, PATIENCE * period)
@@ -92,6 +97,7 @@ def run_loop(source: Source, controller: JointController, send: Callable[[float]
             commands.append(command)
     finally:
         send(0.0)
+        gc.unfreeze()
     sent = np.array([row[0] for row in rows])
     return Loop(
         sent - began, sent, np.array([row[1] for row in rows], dtype=np.int64), np.array([row[2] for row in rows]), passed, tuple(commands)
