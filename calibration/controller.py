@@ -99,7 +99,7 @@ class JointController:
     Raises
     ------
     InputError
-        The gain is none, or a calibration has no branches for a law that needs them.
+        The gain or the law is none, or a calibration has no branches for a law that needs them.
     """
 
     def __init__(
@@ -116,6 +116,8 @@ class JointController:
     ) -> None:
         if not (math.isfinite(gain) and gain > 0):
             raise InputError(f"a gain of {gain:g} 1/s is none; give a positive one, or let it be chosen from the margin")
+        if law not in LAWS:
+            raise InputError(f"there is no control law {law!r}; there are {', '.join(LAWS)}")
         self.human, self.robot, self.limit = human, robot, limit_deg_s
         self._rule: _Rule
         if law == "p":

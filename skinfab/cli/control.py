@@ -16,9 +16,8 @@ if TYPE_CHECKING:
     from calibration.margin import Margin
     from calibration.protocols import Run
 
-#: Must be `calibration.controller.LAWS` and `calibration.protocols.PAPER_DEG`, which are not imported for a help text.
+#: Must be `calibration.controller.LAWS`, which is not imported for a help text.
 LAWS = ("p", "branches", "full")
-PROTOCOLS = ("uniform", "random")
 RATE_HZ = 100.0
 
 

@@ -121,3 +121,8 @@ def test_a_law_with_branches_needs_them(law: Law) -> None:
 def test_a_gain_that_is_none(gain: float) -> None:
     with pytest.raises(InputError, match="is none"):
         controller(gain=gain)
+
+
+def test_a_law_that_is_none() -> None:
+    with pytest.raises(InputError, match="no control law 'pid'; there are p, branches, full"):
+        controller("pid")  # type: ignore[arg-type]
