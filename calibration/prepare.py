@@ -105,7 +105,7 @@ def prepare(
     time, readings, angles = table.time, table.column(signal), table.column(angle)
     if signal == angle:
         raise InputError(f"{signal!r} is named as signal and as angle; they must be two columns")
-    notes: list[str] = []
+    notes: list[str] = [*table.notes]
     forward = np.concatenate([[True], np.diff(time) > 0])
     forward &= time >= np.maximum.accumulate(time)
     if count := int(np.count_nonzero(~forward)):

@@ -50,6 +50,8 @@ class Table:
         By heading, NaN where a cell is empty; the column of times is not among them.
     remarks : dict of str
         From the lines before the headings.
+    notes : tuple of str
+        What was left out, a sentence each.
     """
 
     file: str
@@ -57,6 +59,7 @@ class Table:
     time: FloatArray
     columns: dict[str, FloatArray]
     remarks: dict[str, str]
+    notes: tuple[str, ...] = ()
 
     @property
     def simulated(self) -> bool:
@@ -92,18 +95,18 @@ def read_table(path: str | Path) -> Table:
     """
     path = Path(path)
     lines, delimiter = read_csv_lines(path, max_bytes=TABLE_MAX_BYTES, wanted="a log as a CSV file")
-    remarks, head, rows, first = _parts(lines, delimiter, path)
+    remarks, head, rows, first, notes = _parts(lines, delimiter, path)
     at = _time_column(head, path)
     comma = delimiter == ";"
     columns = {
         name: _numbers(rows, k, comma=comma, where=f"{path}, column {name!r}", first=first) for k, name in enumerate(head) if k != at
     }
     time = _times(rows, at, head[at], comma=comma, where=f"{path}, column {head[at]!r}", first=first)
-    return Table(path.name, hashlib.sha256(path.read_bytes()).hexdigest(), time, columns, remarks)
+    return Table(path.name, hashlib.sha256(path.read_bytes()).hexdigest(), time, columns, remarks, notes)
 
 
-def _parts(lines: Sequence[str], delimiter: str, path: Path) -> tuple[dict[str, str], list[str], list[list[str]], int]:
-    """Remarks, headings, rows, and the number of the first row's line."""
+def _parts(lines: Sequence[str], delimiter: str, path: Path) -> tuple[dict[str, str], list[str], list[list[str]], int, tuple[str, ...]]:
+    """Remarks, headings, rows, the number of the first row's line, and what was left out."""
     remarks: dict[str, str] = {}
     start = 0
     while start < len(lines) and (lines[start].startswith("#") or not lines[start].strip()):
@@ -121,16 +124,18 @@ def _parts(lines: Sequence[str], delimiter: str, path: Path) -> tuple[dict[str, 
     if twice := next((name for name in head if head.count(name) > 1), None):
         raise InputError(f"{path}: two columns are called {twice!r}; give each one a name of its own")
     body = [row for row in rows[1:] if any(cell.strip() for cell in row)]
+    notes: tuple[str, ...] = ()
     for k, row in enumerate(rows[1:]):
         if any(cell.strip() for cell in row) and len(row) != len(head):
             number = start + 2 + k
             if k == len(rows) - 2:  # cut off while it was written: what is whole counts
                 body.pop()
+                notes = (f"{path.name}: the last line is cut off and was left out",)
                 break
             raise InputError(f"{path}, line {number}: {len(row)} cells under {len(head)} headings; mend the line")
     if not body:
         raise InputError(f"{path} has headings and no rows; record something first")
-    return remarks, head, body, start + 2
+    return remarks, head, body, start + 2, notes
 
 
 def _time_column(head: Sequence[str], path: Path) -> int:

@@ -38,8 +38,10 @@ def test_remarks_and_a_byte_order_mark(tmp_path: Path) -> None:
     assert not read_table(written(tmp_path, "time,U\n0,1\n")).simulated
 
 
-def test_a_last_line_cut_off_is_left_out(tmp_path: Path) -> None:
-    assert read_table(written(tmp_path, "time,U,V\n0,1,1\n0.1,2,2\n0.2,3")).column("U").tolist() == [1, 2]
+def test_a_last_line_cut_off_is_left_out_and_said(tmp_path: Path) -> None:
+    table = read_table(written(tmp_path, "time,U,V\n0,1,1\n0.1,2,2\n0.2,3"))
+    assert table.column("U").tolist() == [1, 2] and table.notes == ("log.csv: the last line is cut off and was left out",)
+    assert not read_table(written(tmp_path, "time,U,V\n0,1,1\n")).notes
 
 
 def test_a_column_of_words_is_no_fault_until_it_is_asked_for(tmp_path: Path) -> None:
