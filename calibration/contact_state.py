@@ -32,8 +32,6 @@ BASELINE_S = 0.5
 RECOVERY_PART = 0.2
 #: ... in about so long, s: silicone creeps back. Less than that, the other way, is no contact meanwhile.
 RECOVERY_S = 10.0
-#: ... and no faster than all of it in this time, s: what goes faster is a touch.
-CREEP_S = 0.3
 
 #: What is known of one channel.
 STATE = np.dtype(
@@ -44,8 +42,6 @@ STATE = np.dtype(
         ("baseline", np.float64),
         ("rise", np.float64),  # how far the reading may yet go by itself after a contact, up ...
         ("fall", np.float64),  # ... and down
-        ("pace", np.float64),  # how fast, 1/s; and when it last did
-        ("moved", np.float64),
         ("up", np.float64),  # cumulative sums, and since when they are above zero
         ("down", np.float64),
         ("up_since", np.float64),
@@ -136,25 +132,21 @@ def _step(s, window, now, dt, x, valid, saturated, threshold, cap):  # type: ign
         _start(s, now, sign)
         return STARTED
     if now - s.end >= SETTLE_S:
-        _anchor(s, now)
+        _anchor(s)
         _rest(s)
     return NOTHING
 
 
 @njit(cache=True)
-def _anchor(s, now):  # type: ignore[no-untyped-def]
+def _anchor(s):  # type: ignore[no-untyped-def]
     """Set the baseline where the reading came to rest, and say how far it may go from there by itself."""
     creep = RECOVERY_PART * s.peak
-    back = s.sign * s.change
     s.baseline += s.change
     s.rise, s.fall = max(-s.change, 0.0), max(s.change, 0.0)
     if s.sign > 0:
         s.fall = max(s.fall, creep)
     else:
         s.rise = max(s.rise, creep)
-    # Silicone takes its time. What is more than that, or less than nothing, is a finger that is still on it.
-    s.pace = creep / CREEP_S if 0.0 <= back <= creep else np.inf
-    s.moved = now
 
 
 @njit(cache=True)
@@ -170,8 +162,8 @@ def _watch(s, now, dt, x, threshold, cap):  # type: ignore[no-untyped-def]
     alarm = 1.0 if s.up >= threshold else -1.0 if s.down >= threshold else 0.0
     left = s.rise if alarm > 0 else s.fall
     step = min(left, ALLOWANCE * s.noise)
-    if alarm != 0.0 and left > s.noise and step <= s.pace * (now - s.moved):  # silicone recovers, nothing touches it
-        s.baseline, s.moved, s.up, s.down = s.baseline + alarm * step, now, 0.0, 0.0
+    if alarm != 0.0 and left > s.noise:  # silicone recovers, nothing touches it
+        s.baseline, s.up, s.down = s.baseline + alarm * step, 0.0, 0.0
         if alarm > 0:
             s.rise -= step
         else:

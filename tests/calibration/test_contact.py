@@ -183,3 +183,9 @@ def test_no_channel_of_nothing_but_zero() -> None:
 
 def test_a_contact_knows_whether_it_lasts() -> None:
     assert Contact("S1", 1.0, float("nan"), 1, 0.1).lasting and not Contact("S1", 1.0, 2.0, 1, 0.1).lasting
+
+
+def test_what_creeps_back_while_nothing_is_read_is_no_contact() -> None:
+    left = np.where(TIME > 8, 0.08 * np.exp(-(TIME - 8) / 1.0), 0.0)
+    left[(TIME > 8.6) & (TIME < 10.5)] = np.nan
+    assert spans(detect(skin(touch(5, 8, 0.6) + left))) == near((5.0, 8.0, 1))
