@@ -58,7 +58,8 @@ def test_what_is_planned_passes(text_of: Callable[..., str], name: str, cleaning
         (r"^G1 E-(.*)$", r"G1 E\1", 0, "is pushed out at standstill where no path follows: it leaves a blob"),
         (r"^G1 E-", "G1 E150 F495.8\nG1 E-", 0, "E150 is pushed out at standstill where no path follows"),
         (r"^G1 E(\d.*)$", r"G1 E-\1", 0, "draws ink back right before the path, where a prime pushes it"),
-        (r"^G0 Z10.0000.*$", r"G1 Z10 E60 F300", 0, "E60 on a move in Z"),
+        (r"^G0 Z10.0000.*$", r"G1 Z10 E60 F300", 0, "E60 on a move in Z: the ink is drawn out to a thread"),
+        (r"^G0 Z10.0000.*$", r"G1 Z10 E-6 F300", 0, "E-6 on a move in Z: part of the ink is drawn back only while the nozzle is away"),
         (r"^(G0 X5.0000 Y.*)$", r"G1 E190 F495.8\n\1", 0, "E190 is pushed out at standstill where no path follows"),
         (r"^; end$", "G1 E190 F495.8\n; end", 0, "E190 is pushed out at standstill where no path follows"),
         (r"^G1 E-.*\n", "", None, "and does not retract: the nozzle drips"),
@@ -155,6 +156,60 @@ def test_a_file_of_anyones_may_fill_its_nozzle_first(printer: Printer) -> None:
     fills = HEAD.replace("G0 X100", "G0 X5 Y5 F6000\nG0 Z1.6 F300\nG1 E60 F400\nG0 Z10 F300\nG0 X100")
     assert found(fills + second_stroke(4, 4), printer) == []
     assert found(fills + "G1 X110 Y100 E40 F240\nG0 Z10 F300", printer) == []
+
+
+@pytest.mark.parametrize("name", ["", "; pattern C1\n"])
+@pytest.mark.parametrize(
+    ("strokes", "line", "says"),
+    [
+        (second_stroke(4, 4), None, ""),
+        (
+            second_stroke(8, 0, 0).replace("G1 E4 ", "G1 E8 ").replace("G1 E0 F400\n", "").replace("G1 E-0 F400\n", ""),
+            10,
+            "E8 less than at",
+        ),
+        (
+            second_stroke(4, 4).replace("G0 Z10 F300\n", "G0 Z10 F300\nG1 E4\nG1 E-4\n", 1),
+            12,
+            "E4 is pushed out at standstill where no path",
+        ),
+        (second_stroke(4, 4).replace("G1 E-4 F400\nG0 Z10 F300\n", "G0 Z10 F300\nG1 E-4 F400\n"), None, ""),  # drawn back lifted
+        (second_stroke(4, 4).replace("G1 E-4 F400\n", "", 1).replace("G1 E4 F400\nG1 X110 Y150", "G1 X110 Y150"), None, ""),  # kept full
+    ],
+)
+def test_a_name_makes_no_stroke_weaker(strokes: str, line: int | None, says: str, name: str, printer: Printer) -> None:
+    faults = found(HEAD + name + strokes, printer)
+    assert [at - bool(name) for at, _, _ in faults] == ([] if line is None else [line])
+    assert all(says in what for _, what, _ in faults)
+
+
+def test_within_a_pattern_each_stroke_draws_back_what_it_primed(printer: Printer) -> None:
+    strokes = second_stroke(4, 4, 1).replace("G1 E4 ", "G1 E1 ", 1)
+    assert found(HEAD + strokes, printer) == []  # of a file of anyone's nobody knows how full its nozzle is at first
+    ((line, what, _),) = found(HEAD + "; pattern C1\n" + strokes, printer)
+    assert line == 11 and what.startswith("it primes E1 and retracts E4")
+    portions = second_stroke(4, 4).replace("G1 E-4 F400\n", "G1 E-1 F400\nG1 E-3\n").replace("G1 E4 F400\n", "G1 E2 F400\nG1 E2\n")
+    assert found(HEAD + "; pattern C1\n" + portions, printer) == []
+
+
+def test_every_pattern_is_primed_alike(printer: Printer) -> None:
+    line = "G0 X100 Y80 F6000\nG0 Z1.6 F300\nG1 X110 E40 F240\nG0 Z10 F300\nG0 X100 Y100 F6000\nG0 Z1.6 F300\n"
+    more = second_stroke(4, 8, 8).replace("G0 X100 Y150", "; pattern C2\nG0 X100 Y150")
+    ((at, what, where),) = found(HEAD + "; pattern C1\n" + more, printer)
+    assert (at, where) == (16, "C2") and "holds E4 more than at the first stroke's start" in what
+    # A line that fills the nozzle before the first pattern is none of them.
+    same = second_stroke(4, 4).replace("G0 X100 Y150", "; pattern C2\nG0 X100 Y150")
+    assert found(HEAD.replace("G0 X100 Y100 F6000\nG0 Z1.6 F300\n", line) + "; pattern C1\n" + same, printer) == []
+
+
+def test_a_prime_away_from_the_path_counts_as_filling(printer: Printer) -> None:
+    away = HEAD.replace("G0 X100", "G1 E4 F400\nG0 X100") + "{}G1 X110 Y100 E40 F240\nG1 E-4 F400\nG0 Z10 F300\n"
+    (fault,) = check_text(away.format(""), printer)
+    assert fault.line == 10 and "what line 6 pushes, away from the path, fills the nozzle and is no prime" in fault.what
+    assert fault.remedy == "push it where the stroke begins, after the way there"
+    assert found(away.format("G1 E4 F400\n"), printer) == []
+    ((line, what, _),) = found(away.format("").replace("G1 E4", "; pattern C1\nG1 E4"), printer)
+    assert line == 7 and "it leaves a blob" in what
 
 
 def test_absolute_e_with_three_decimals(printer: Printer) -> None:
