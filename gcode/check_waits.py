@@ -7,7 +7,7 @@ from bisect import bisect_left
 from collections.abc import Iterator
 
 from gcode.printer import Printer
-from gcode.trace import Finding, Move, Trace
+from gcode.trace import Finding, Trace
 from gcode.words import Command
 
 #: Who or what is waited for, for any length of time (marlinfw.org, M0, M25 and M226); GRBL knows the first two.
@@ -20,7 +20,8 @@ TEMPERATURE = frozenset({"M109", "M116", "M190", "M191"})
 def wait_findings(judged: Trace, printer: Printer) -> Iterator[Finding]:
     """Waits for somebody before the last ink, and any wait between two moves of one stroke.
 
-    A dwell after a lift, between strokes or before the ink is none of these.
+    A stroke ends where the nozzle lifts: a way at print height without ink does not end it. A dwell after a lift, after
+    the last ink before one, or before the ink is none of these.
 
     Examples
     --------
@@ -34,6 +35,10 @@ def wait_findings(judged: Trace, printer: Printer) -> Iterator[Finding]:
     first, last = min(inked, default=math.inf), max(inked, default=-math.inf)
     ways = [m for m in judged.moves if m.is_planar or m.start[2] != m.end[2]]  # all but ink at standstill
     lines = [m.line for m in ways]
+    lifts = [m.start[2] != m.end[2] and not _is_low(m.end[2], printer) for m in ways]
+    lays = [m.e > 0 and m.is_planar for m in ways]
+    after_ink = _held(lays, lifts)
+    before_ink = _held(lays[::-1], lifts[::-1])[::-1]
     for command in judged.commands:
         code = command.code
         if code not in STOPPED and code not in TEMPERATURE and code != "G4":
@@ -46,7 +51,7 @@ def wait_findings(judged: Trace, printer: Printer) -> Iterator[Finding]:
                 yield Finding(command.line, what, "take it out")
             continue
         after = bisect_left(lines, command.line)
-        if not _is_stroke(ways[after - 1], ways[after]):
+        if not (after_ink[after - 1] and before_ink[after]):
             continue
         if code == "G4" and (seconds := _seconds(command, printer)) > 0:
             what = f"G4 waits {seconds:g} s within a stroke, and ink gathers where the nozzle stands"
@@ -56,8 +61,17 @@ def wait_findings(judged: Trace, printer: Printer) -> Iterator[Finding]:
             yield Finding(command.line, what, "take it out; the print is cold throughout", ways[after].pattern)
 
 
-def _is_stroke(before: Move, after: Move) -> bool:
-    return before.e > 0 and before.is_planar and after.e > 0 and after.is_planar
+def _is_low(z: float | None, printer: Printer) -> bool:
+    return z is not None and z <= printer.heights.print_max
+
+
+def _held(lays: list[bool], lifts: list[bool]) -> list[bool]:
+    """After each way: was ink laid, and the nozzle not lifted since?"""
+    held, inked = [], False
+    for lays_ink, lift in zip(lays, lifts, strict=True):
+        inked = lays_ink or (inked and not lift)
+        held.append(inked)
+    return held
 
 
 def _seconds(command: Command, printer: Printer) -> float:

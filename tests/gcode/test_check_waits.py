@@ -51,6 +51,23 @@ def test_ink_at_standstill_does_not_end_a_stroke(printer: Printer) -> None:
 
 
 @pytest.mark.parametrize(
+    ("way", "count"),
+    [
+        ("G0 X111 Y100\nG4 P90000\n", 1),  # a stop that is moved a little
+        ("G4 P90000\nG0 X111 Y100\n", 1),
+        ("G0 X111\nG4 S1\nM109 S0\nG0 X110.5\n", 2),
+        ("G0 Z1.7\nG4 S5\nG0 Z1.6\n", 1),  # still within print height
+        ("G0 X111\nG0 Z10 F300\nG4 S5\nG0 Z1.6\n", 0),
+        ("G0 Z10 F300\nG0 X111\nG0 Z1.6\nG4 S5\n", 0),  # it comes down and the pump settles
+        ("G0 X111\nG4 S5\nG0 Z10 F300\nG0 Z1.6\n", 0),  # the stroke ends behind the overrun
+    ],
+)
+def test_only_a_lift_ends_a_stroke(printer: Printer, way: str, count: int) -> None:
+    waits = [f for f in found(printer, "within", way.rstrip()) if "within a stroke" in f]
+    assert len(waits) == count
+
+
+@pytest.mark.parametrize(
     ("line", "says"), [("M25", "M25 waits for someone to resume"), ("M226 P1 S1", "M226 waits for a pin"), ("M0", "M0 waits for a click")]
 )
 def test_waiting_for_somebody_between_strokes_too(printer: Printer, line: str, says: str) -> None:
