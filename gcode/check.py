@@ -114,6 +114,9 @@ def judge(
     judged, fault = trace_as_far(text, spindle=printer.spindle)
     laid = laid_pieces(judged, printer)
     wall = mould.wall if mould else wall
+    mistaken = tuple(piece_findings(text, mould)) if mould else ()
+    if mistaken:
+        mould = wall = None  # what is told of another piece's mould would be wrong advice
     findings = [
         *(() if fault else file_findings(judged, printer)),
         *line_findings(text),
@@ -125,7 +128,7 @@ def judge(
         *ink_findings(judged, laid),
         *bead_findings(judged, laid, printer, meant_area(judged, bead_area)),
         *(mould_findings(judged, laid, mould) if mould else ()),
-        *(piece_findings(text, mould) if mould else ()),
+        *mistaken,
         *(wall_findings(judged, wall, printer.nozzle) if wall else ()),
         *balance_findings(judged, printer),
     ]

@@ -72,10 +72,10 @@ def head_piece(text: str) -> str | None:
 
 
 def piece_findings(text: str, mould: Mould) -> Iterator[Finding]:
-    """Is it for another piece, by its own head? Then ink may lie in the mould by chance, and still not where it belongs."""
+    """Is it for another piece, by its own head? Then nothing that is found of this one's mould and wall is of use."""
     if (named := head_piece(text)) not in (None, mould.piece.id):
         what = f"its head says it is for piece {named}, it is judged for piece {mould.piece.id}"
-        yield Finding(_HEAD_LINE, what, "give the file of that piece, or --piece as the head says")
+        yield Finding(_HEAD_LINE, what, "give the file of that piece, or --piece as the head says; the mould is judged then")
 
 
 def mould_findings(judged: Trace, laid: Pieces, mould: Mould) -> Iterator[Finding]:

@@ -73,6 +73,18 @@ def test_the_mould_stands_where_the_writer_puts_it(planned: Plan, make_piece: Ca
     assert mould.piece is piece and mould.offset == planned.offset
 
 
+def test_of_the_wrong_piece_no_more_is_told(make_piece: Callable[..., Piece], planned: Plan, printer: Printer, material: Material) -> None:
+    mould = standing(make_piece(120, 100), material, (planned.offset[0] + 18, planned.offset[1]))
+    text = emit(planned.program, printer)
+    advice = [f for f in judge(text, printer, mould=mould).findings if "mm inward" in f.remedy or "outside piece" in f.what]
+    assert advice
+    (fault,) = judge(text.replace("; piece P1", "; piece P9"), printer, mould=mould).findings
+    assert fault.what == "its head says it is for piece P9, it is judged for piece P1"
+    assert fault.remedy.endswith("or --piece as the head says; the mould is judged then")
+    # The rest is judged all the same.
+    assert len(judge(text.replace("; piece P1", "; piece P9") + "G0 X400\n", printer, mould=mould).findings) == 2
+
+
 @pytest.mark.parametrize("name", ["ender5plus-vipro", "generic-grbl"])
 @pytest.mark.parametrize("end", ["\n", "\r\n", "\r", " \r\n"])
 def test_the_head_reads_the_same_with_any_line_end(planned: Plan, name: str, end: str) -> None:
