@@ -29,9 +29,9 @@ SHIFTS = ("G92",)
 WORKSPACES = ("G55", "G56", "G57", "G58", "G59", "G59.1", "G59.2", "G59.3")
 #: They load settings that were stored or built in (marlinfw.org, M501, M502); M500 only stores them.
 RESETS = ("M501", "M502")
-#: They run what is not in this file: another file, a macro (RepRapFirmware's M98; marlinfw.org, M32, M810).
-CALLS = ("M32", "M98", *(f"M{number}" for number in range(810, 820)))
-STOPS = ("M112", "M410")
+#: They run what is not in this file: another file, a macro (RepRapFirmware's M98; marlinfw.org, M23, M24, M32, M810).
+CALLS = ("M23", "M24", "M32", "M98", *(f"M{number}" for number in range(810, 820)))
+STOPS = ("M112", "M410", "M524")
 #: Motions of the firmware's own: pattern, retract, wipe, park, sled, go to mesh point, resume, calibrate, change of filament,
 #: babystep, stow (the head may rise for it).
 UNFOLLOWED = (
@@ -145,6 +145,16 @@ def _steps(command: Command, _: State) -> str:
     return " and ".join(axis for axis in "XYZE" if axis in command.words)
 
 
+def _cuts_power(_: Command, state: State) -> bool:
+    """At the end of a print it is usual."""
+    return state.ink_follows
+
+
+def _amid_the_ink(_: Command, state: State) -> bool:
+    """Before it, a file may well set what the machine has; the unit is the driver's, so no value is wrong by itself."""
+    return state.wet and state.ink_follows
+
+
 def _volumetric(command: Command, _: State) -> bool:
     """D is the filament's diameter, which switches it on unless it is 0 or S is."""
     d, s = (command.words.get(letter) for letter in "DS")
@@ -223,6 +233,19 @@ RULES = (
         "put it at the end",
     ),
     Rule(STOPS, _always, "{code} stops the machine at once: what follows is not printed", "take it out"),
+    Rule(("M81",), _cuts_power, "M81 turns the power off before the last ink: what follows is not printed", "put it at the end"),
+    Rule(
+        ("M808",),
+        _always,
+        "M808 marks moves that are run again from a card: the nozzle goes through its own wet ink",
+        "write every move once, and take it out",
+    ),
+    Rule(
+        ("M907",),
+        _amid_the_ink,
+        "M907 changes the motors' current amid the ink, and a motor with too little loses steps",
+        "send it before the start, not in the file",
+    ),
     Rule(
         ("M92",),
         _steps,
