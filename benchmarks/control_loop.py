@@ -17,13 +17,13 @@ from pathlib import Path
 
 import numpy as np
 
-from calibration.controller import Input, JointController
-from calibration.finger import HUMAN, ROBOT
-from calibration.finger_logs import calibrated
-from calibration.loop import FingerBoard, run_loop
-from calibration.loop_figure import draw_loop
-from calibration.margin import judged
-from calibration.protocols import uniform
+from calibration.control.controller import Input, JointController
+from calibration.control.loop import FingerBoard, run_loop
+from calibration.control.loop_figure import draw_loop
+from calibration.control.margin import judged
+from calibration.control.protocols import uniform
+from calibration.finger.logs import calibrated
+from calibration.finger.simulated import HUMAN, ROBOT
 from skinfab.readout.pty_server import PtyServer
 from skinfab.readout.serial_port import SerialPort
 

@@ -10,11 +10,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from calibration.contact import detect
-from calibration.contact_objects import OBJECTS
-from calibration.contact_score import Rate, poisson
-from calibration.contact_simulator import Scene, simulate
-from calibration.contact_study import ablation, figures, judge
+from calibration.contact.detector import detect
+from calibration.contact.objects import OBJECTS
+from calibration.contact.score import Rate, poisson
+from calibration.contact.simulator import Scene, simulate
+from calibration.contact.study import ablation, figures, judge
 from skinfab.readout.frame import Channel, Recording, Stream
 
 #: Others than those that the detector was made with.

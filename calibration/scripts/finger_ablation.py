@@ -3,7 +3,7 @@
 import sys
 from dataclasses import astuple
 
-from calibration.ablation import TERMS, figures_without
+from calibration.control.ablation import TERMS, figures_without
 
 if __name__ == "__main__":
     for term in TERMS:

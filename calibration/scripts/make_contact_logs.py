@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from calibration.contact_simulator import simulate
+from calibration.contact.simulator import simulate
 from skinfab.files import atomic_write
 from skinfab.readout.logs.log import write_log
 

@@ -6,8 +6,8 @@ Without a folder they go beside this script's, into ``calibration/logs``; the sa
 import sys
 from pathlib import Path
 
-from calibration.finger import HUMAN, ROBOT
-from calibration.finger_logs import log_text
+from calibration.finger.logs import log_text
+from calibration.finger.simulated import HUMAN, ROBOT
 from skinfab.files import atomic_write
 
 if __name__ == "__main__":

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from skinfab.cli import steps
 
 if TYPE_CHECKING:
-    from calibration.markers import Markers
+    from calibration.mocap.markers import Markers
     from skinfab.readout.frame import Recording
 
 #: What the column is called.
@@ -54,8 +54,8 @@ def run(args: argparse.Namespace) -> int:
         args.wrong_usage("--shift says when the capture began by the time of a log; give --log too")
     import numpy as np
 
-    from calibration.angle import MAX_GAP_S, bridge_gaps, joint_angle
-    from calibration.markers import read_markers
+    from calibration.mocap.angle import MAX_GAP_S, bridge_gaps, joint_angle
+    from calibration.mocap.markers import read_markers
     from skinfab.errors import InputError
     from skinfab.files import require_place
     from skinfab.readout.logs.log import write_log

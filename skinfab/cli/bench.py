@@ -24,8 +24,8 @@ MODULES = {
     "flatten": ("skinfab.bench.flatten", True),
     "simplify": ("skinfab.bench.simplify", True),
     "gcode": ("gcode.bench", False),
-    "calibrate": ("calibration.bench", False),
-    "control": ("calibration.bench_control", False),
+    "calibrate": ("calibration.bench.calibrate", False),
+    "control": ("calibration.bench.control", False),
     "readout": ("skinfab.bench.readout", False),
 }
 

@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING, Any
 from skinfab.cli import steps
 
 if TYPE_CHECKING:
-    from calibration.calibrate import Calibration
-    from calibration.document import SensorCalibration
-    from calibration.prepare import Prepared
+    from calibration.strain.calibrate import Calibration
+    from calibration.strain.document import SensorCalibration
+    from calibration.strain.prepare import Prepared
     from skinfab.readout.table import Table
 
-#: Must be the names of `calibration.models.MODELS`, which is not imported for a help text.
+#: Must be the names of `calibration.strain.models.MODELS`, which is not imported for a help text.
 NAMES = ("auto", "poly", "branches", "play", "lag")
 
 
@@ -66,8 +66,8 @@ def run(args: argparse.Namespace) -> int:
     """Fit, judge, write, and say how good it is."""
     if args.limits and not (math.isfinite(sum(args.limits)) and args.limits[0] < args.limits[1]):
         args.wrong_usage(f"--range {args.limits[0]:g} {args.limits[1]:g}: the first must be below the second")
-    from calibration.calibrate import calibrate
-    from calibration.prepare import prepare
+    from calibration.strain.calibrate import calibrate
+    from calibration.strain.prepare import prepare
     from skinfab.readout.logs.log import read_log_table
 
     limits = tuple(args.limits) if args.limits else None
@@ -127,8 +127,8 @@ def _finite(values: Any) -> list[float | None]:
 
 def _new_task(path: Path, args: argparse.Namespace, log: Prepared, found: Calibration) -> dict[str, Any]:
     """All models, fitted to the log, on another one."""
-    from calibration.calibrate import rms_on
-    from calibration.prepare import prepare
+    from calibration.strain.calibrate import rms_on
+    from calibration.strain.prepare import prepare
     from skinfab.readout.logs.log import read_log_table
 
     other = prepare(read_log_table(path)[0], signal=args.signal, angle=args.angle, limits=(log.low, log.high), u0=log.u0)
@@ -139,8 +139,8 @@ def _write(args: argparse.Namespace, table: Table, log: Prepared, found: Calibra
     import csv
     import io
 
-    from calibration.document import save_calibration
-    from calibration.figure import draw_calibration
+    from calibration.strain.document import save_calibration
+    from calibration.strain.figure import draw_calibration
     from skinfab.files import atomic_write
 
     args.output.mkdir(parents=True, exist_ok=True)
@@ -164,7 +164,7 @@ def _write(args: argparse.Namespace, table: Table, log: Prepared, found: Calibra
 def _calibration(args: argparse.Namespace, table: Table, log: Prepared, found: Calibration) -> SensorCalibration:
     from datetime import UTC, datetime
 
-    from calibration.document import SensorCalibration
+    from calibration.strain.document import SensorCalibration
 
     return SensorCalibration(
         found.model,

@@ -14,13 +14,13 @@ from skinfab.cli import steps
 from skinfab.cli.record import baud
 
 if TYPE_CHECKING:
-    from calibration.contact import Contact, Detection
-    from calibration.contact_score import Score
-    from calibration.contact_table import Row
+    from calibration.contact.detector import Contact, Detection
+    from calibration.contact.score import Score
+    from calibration.contact.table import Row
     from skinfab.readout.frame import Recording
 
 SIMULATOR = "simulator"
-#: Must be the names of `calibration.contact_objects.OBJECTS`, which is not imported for a help text.
+#: Must be the names of `calibration.contact.objects.OBJECTS`, which is not imported for a help text.
 OBJECTS = ("cube", "cylinder", "dodecahedron", "grip", "cup")
 
 
@@ -82,7 +82,7 @@ def run(args: argparse.Namespace) -> int:
         notes: list[str] = []
     else:
         sessions, notes = _watched(args) if kind == "port" else _logged(args)
-    from calibration.contact_table import contact_table
+    from calibration.contact.table import contact_table
 
     tables = {name: contact_table([(each.recording, each.found) for each in trials]) for name, trials in sessions.items()}
     for trials in sessions.values():
@@ -130,7 +130,7 @@ def _watched(args: argparse.Namespace) -> tuple[dict[str, list[Trial]], list[str
 
 
 def _logged(args: argparse.Namespace) -> tuple[dict[str, list[Trial]], list[str]]:
-    from calibration.contact import detect
+    from calibration.contact.detector import detect
     from skinfab.errors import InputError
     from skinfab.progress import terminal_progress
     from skinfab.readout.logs.log import read_log
@@ -151,9 +151,9 @@ def _logged(args: argparse.Namespace) -> tuple[dict[str, list[Trial]], list[str]
 
 
 def _simulated(args: argparse.Namespace) -> tuple[dict[str, list[Trial]], dict[str, dict[str, list[Score]]]]:
-    from calibration.contact import detect
-    from calibration.contact_simulator import simulate
-    from calibration.contact_study import judge
+    from calibration.contact.detector import detect
+    from calibration.contact.simulator import simulate
+    from calibration.contact.study import judge
     from skinfab.progress import terminal_progress
 
     names = OBJECTS if args.object in (None, "all") else (args.object,)
@@ -181,7 +181,7 @@ def _facts(
     notes: Sequence[str],
 ) -> dict[str, Any]:
     """The result, ready for JSON."""
-    from calibration.contact_study import figures
+    from calibration.contact.study import figures
 
     facts: dict[str, Any] = {"false_alarms_per_minute": args.false_alarms, "objects": {}, "notes": list(notes)}
     for name, trials in sessions.items():
@@ -224,7 +224,7 @@ def _finite(value: Any) -> Any:
 
 
 def _write(folder: Path, sessions: dict[str, list[Trial]], tables: dict[str, tuple[Row, ...]], result: dict[str, Any]) -> None:
-    from calibration.contact_figure import Panel, draw_contacts
+    from calibration.contact.figure import Panel, draw_contacts
     from skinfab.files import atomic_write
 
     folder.mkdir(parents=True, exist_ok=True)

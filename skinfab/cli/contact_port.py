@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from skinfab.cli import steps
 
 if TYPE_CHECKING:
-    from calibration.contact import Contact, ContactDetector, Detection
+    from calibration.contact.detector import Contact, ContactDetector, Detection
     from skinfab.readout.frame import Frame, Recording
     from skinfab.readout.serial_port import SerialPort
 
@@ -29,7 +29,7 @@ def watch_port(
     InputError
         It cannot be opened, sends nothing, or has no such channel.
     """
-    from calibration.contact import ContactDetector
+    from calibration.contact.detector import ContactDetector
     from skinfab.errors import InputError
     from skinfab.readout.frame import Recording
     from skinfab.readout.serial_port import BAUD, SerialPort
@@ -61,7 +61,7 @@ def _told(contact: Contact, now: float) -> str:
     """
     Examples
     --------
-    >>> from calibration.contact import Contact
+    >>> from calibration.contact.detector import Contact
     >>> _told(Contact("S1", 5.0, 7.0, -1, 0.159), 7.01)
     '7.01 s, S1 let go after 2.00 s, -15.9 %'
     """

@@ -12,11 +12,11 @@ from skinfab.cli import steps
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from calibration.controller import Input
-    from calibration.margin import Margin
-    from calibration.protocols import Run
+    from calibration.control.controller import Input
+    from calibration.control.margin import Margin
+    from calibration.control.protocols import Run
 
-#: Must be `calibration.controller.LAWS`, which is not imported for a help text.
+#: Must be `calibration.control.controller.LAWS`, which is not imported for a help text.
 LAWS = ("p", "branches", "full")
 RATE_HZ = 100.0
 
@@ -57,7 +57,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 def run(args: argparse.Namespace) -> int:
     """Judge the gain, control, write, and say how well it went."""
     _require_fitting_options(args)
-    from calibration.margin import judged
+    from calibration.control.margin import judged
 
     human, robot = _inputs(args)
     margin = judged(robot, args.controller, args.gain, lag_s=args.lag, delay_s=args.delay, period_s=1 / RATE_HZ, force=args.force)
@@ -95,10 +95,10 @@ def _require_fitting_options(args: argparse.Namespace) -> None:
 
 def _inputs(args: argparse.Namespace) -> tuple[Input, Input]:
     """Both sensors; the simulator's own where none is given."""
-    from calibration.controller import Input
-    from calibration.document import load_calibration
-    from calibration.finger import HUMAN, ROBOT
-    from calibration.finger_logs import calibrated
+    from calibration.control.controller import Input
+    from calibration.finger.logs import calibrated
+    from calibration.finger.simulated import HUMAN, ROBOT
+    from calibration.strain.document import load_calibration
 
     model = "poly" if args.controller == "p" else "branches"
     given = ((args.human, HUMAN), (args.robot, ROBOT))
@@ -120,10 +120,10 @@ def margin_facts(margin: Margin) -> dict[str, Any]:
 
 
 def _simulated(args: argparse.Namespace, human: Input, robot: Input, margin: Margin) -> tuple[list[Run], list[str]]:
-    from calibration.controller import JointController
-    from calibration.finger import Plant
-    from calibration.human_log import human_motion
-    from calibration.protocols import follow, random, uniform
+    from calibration.control.controller import JointController
+    from calibration.control.human_log import human_motion
+    from calibration.control.protocols import follow, random, uniform
+    from calibration.finger.simulated import Plant
     from skinfab.readout.table import read_table
 
     def controller() -> JointController:
@@ -143,7 +143,7 @@ def _simulated(args: argparse.Namespace, human: Input, robot: Input, margin: Mar
 
 def facts(args: argparse.Namespace, runs: Sequence[Run], margin: Margin, notes: Sequence[str]) -> dict[str, Any]:
     """The result, ready for JSON."""
-    from calibration.protocols import PAPER_DEG
+    from calibration.control.protocols import PAPER_DEG
 
     def share(of: list[bool]) -> float:
         return sum(of) / len(of)
@@ -173,7 +173,7 @@ def _write(args: argparse.Namespace, runs: Sequence[Run], result: dict[str, Any]
     import csv
     import io
 
-    from calibration.control_figure import draw_runs
+    from calibration.control.figure import draw_runs
     from skinfab.files import atomic_write
 
     args.output.mkdir(parents=True, exist_ok=True)

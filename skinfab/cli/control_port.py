@@ -11,15 +11,15 @@ from typing import TYPE_CHECKING, Any
 from skinfab.errors import InputError
 
 if TYPE_CHECKING:
-    from calibration.controller import Input
-    from calibration.loop import Loop
-    from calibration.margin import Margin
+    from calibration.control.controller import Input
+    from calibration.control.loop import Loop
+    from calibration.control.margin import Margin
 
 
 def run_port(args: argparse.Namespace, human: Input, robot: Input, margin: Margin) -> int:
     """Control for `args.seconds`, write what happened, and say how long commands took."""
-    from calibration.controller import JointController
-    from calibration.loop import run_loop
+    from calibration.control.controller import JointController
+    from calibration.control.loop import run_loop
     from skinfab.cli.control import RATE_HZ
     from skinfab.readout.serial_port import SerialPort
 
@@ -99,7 +99,7 @@ def _write(args: argparse.Namespace, loop: Loop, result: dict[str, Any]) -> None
     import io
     import math
 
-    from calibration.loop_figure import draw_loop
+    from calibration.control.loop_figure import draw_loop
     from skinfab.files import atomic_write
 
     args.output.mkdir(parents=True, exist_ok=True)

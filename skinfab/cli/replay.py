@@ -12,7 +12,7 @@ from skinfab.cli import steps
 from skinfab.progress import Progress, terminal_progress
 
 if TYPE_CHECKING:
-    from calibration.document import SensorCalibration
+    from calibration.strain.document import SensorCalibration
     from skinfab.readout.logs.log import Log
     from skinfab.readout.replay import Replay
 
@@ -88,7 +88,7 @@ def run(args: argparse.Namespace) -> int:
 def _calibration(path: Path | None) -> SensorCalibration | None:
     if path is None:
         return None
-    from calibration.document import load_calibration
+    from calibration.strain.document import load_calibration
 
     return load_calibration(path)
 
@@ -119,7 +119,7 @@ def _through(
     args: argparse.Namespace, source: Replay, log: Log, calibration: SensorCalibration | None, progress: Progress
 ) -> tuple[dict[str, list[float]], dict[str, Any]]:
     """The columns of the table, frame by frame, and what is to be said of them."""
-    from calibration.live import Live
+    from calibration.strain.live import Live
 
     live = Live(source.stream, log.recording, calibration, channel=args.signal, bridge=tuple(args.bridge) if args.bridge else None)
     columns: dict[str, list[float]] = {name: [] for name in live.names}
@@ -138,8 +138,8 @@ def _write(output: Path, columns: dict[str, list[float]], result: dict[str, Any]
     import csv
     import io
 
-    from calibration.live import drawn
-    from calibration.time_figure import draw_over_time
+    from calibration.strain.live import drawn
+    from calibration.strain.time_figure import draw_over_time
     from skinfab.files import atomic_write
 
     output.mkdir(parents=True, exist_ok=True)

@@ -2,7 +2,7 @@
 
 Each channel is a Wheatstone bridge's voltage that follows the joint's angle in proportion, with white noise, on a range of
 its own. Left out is all that a real sensor adds: curvature of the characteristic, hysteresis, drift, cross-talk. For these
-there is `calibration.finger`.
+there is `calibration.finger.simulated`.
 """
 
 from __future__ import annotations

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from calibration.models import Samples
-from calibration.play import play
+from calibration.strain.models import Samples
+from calibration.strain.play import play
 
 FloatArray = NDArray[np.float64]
 

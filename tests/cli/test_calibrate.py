@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from calibration.document import load_calibration
-from calibration.models import MODELS
+from calibration.strain.document import load_calibration
+from calibration.strain.models import MODELS
 from skinfab.cli import calibrate
 from skinfab.cli.main import main
 from skinfab.readout.logs.log import read_log, write_log

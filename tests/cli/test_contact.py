@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from calibration.contact import detect
-from calibration.contact_objects import OBJECTS
-from calibration.contact_simulator import simulate
+from calibration.contact.detector import detect
+from calibration.contact.objects import OBJECTS
+from calibration.contact.simulator import simulate
 from skinfab.cli import contact
 from skinfab.cli.main import main
 from skinfab.readout.frame import Recording

@@ -9,12 +9,12 @@ from pathlib import Path
 
 import pytest
 
-from calibration.controller import LAWS
-from calibration.document import save_calibration
-from calibration.finger import HUMAN, ROBOT
-from calibration.finger_logs import calibrated
-from calibration.loop import FingerBoard
-from calibration.protocols import PAPER_DEG, uniform
+from calibration.control.controller import LAWS
+from calibration.control.loop import FingerBoard
+from calibration.control.protocols import PAPER_DEG, uniform
+from calibration.finger.logs import calibrated
+from calibration.finger.simulated import HUMAN, ROBOT
+from calibration.strain.document import save_calibration
 from skinfab.cli import control
 from skinfab.cli.main import main
 from skinfab.readout.pty_server import PtyServer

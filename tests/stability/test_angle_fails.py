@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from calibration.angle import joint_angle
+from calibration.mocap.angle import joint_angle
 
 
 def bones(degrees: np.ndarray, noise: float = 0.0) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from calibration.calibrate import calibrate
-from calibration.curve import fit_curve
-from calibration.models import MODELS, Samples
-from calibration.prepare import prepare
+from calibration.strain.calibrate import calibrate
+from calibration.strain.curve import fit_curve
+from calibration.strain.models import MODELS, Samples
+from calibration.strain.prepare import prepare
 from skinfab.errors import InputError
 from skinfab.readout.table import Table
 

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from calibration.contact import detect
-from calibration.contact_peers import THRESHOLD, fixed_threshold, high_pass
-from calibration.contact_simulator import Scene, simulate
+from calibration.contact.detector import detect
+from calibration.contact.peers import THRESHOLD, fixed_threshold, high_pass
+from calibration.contact.simulator import Scene, simulate
 from skinfab.readout.frame import Channel, Recording, Stream
 
 TIME = np.arange(12_000) / 100

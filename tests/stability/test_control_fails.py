@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from calibration.controller import Input, JointController
-from calibration.curve import fit_curve
-from calibration.document import SensorCalibration
-from calibration.finger import HUMAN, RATE_HZ, ROBOT, Finger, Plant, Reader
-from calibration.finger_logs import calibrated, prepared
-from calibration.margin import judged
-from calibration.models import CurveModel
-from calibration.protocols import Motion, follow, uniform
+from calibration.control.controller import Input, JointController
+from calibration.control.margin import judged
+from calibration.control.protocols import Motion, follow, uniform
+from calibration.finger.logs import calibrated, prepared
+from calibration.finger.simulated import HUMAN, RATE_HZ, ROBOT, Finger, Plant, Reader
+from calibration.strain.curve import fit_curve
+from calibration.strain.document import SensorCalibration
+from calibration.strain.models import CurveModel
 from skinfab.errors import InputError, RefusedError
 from skinfab.readout.frame import Frame
 

@@ -105,7 +105,7 @@ def write_log(recording: Recording, path: str | Path) -> None:
 
 
 def read_log_table(path: str | Path) -> tuple[Table, tuple[str, ...]]:
-    """Read a log as a table, as `calibration.prepare` wants it, and what is to be said of it.
+    """Read a log as a table, as `calibration.strain.prepare` wants it, and what is to be said of it.
 
     A CSV file that another program wrote is read by `read_table` as it is; all else by `read_log` and `table_of`.
 

@@ -1,0 +1,1 @@
+"""Measurements of calibration and control, for `skinfab bench`."""

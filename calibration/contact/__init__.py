@@ -1,0 +1,1 @@
+"""Contact detection: resting levels, false alarms, events, tables, the simulator they are judged on."""

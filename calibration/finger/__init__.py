@@ -1,0 +1,1 @@
+"""The simulated finger, and logs of it."""

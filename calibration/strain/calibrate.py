@@ -1,0 +1,250 @@
+"""Fit a strain sensor to joint angles: how many degrees the curve needs, which model the log needs, and how well it will do.
+
+Degree and model are chosen by cross-validation, trial by trial or, where none are marked, half by half: the simplest
+whose error is within one standard error of the least. What is handed out is fitted to the whole log; the errors reported
+are those on its second half (or that of its trials) of a model that was fitted to the first.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from calibration.strain.curve import Curve, fit_curve
+from calibration.strain.models import MODELS, Model, Samples
+from calibration.strain.prepare import Prepared
+from skinfab.errors import InputError
+
+FloatArray = NDArray[np.float64]
+Name = TypeVar("Name", str, int)
+
+#: The highest degree that is tried: the paper needed 3 and 4.
+MAX_DEGREE = 6
+#: So many samples are timed, one by one.
+_TIMED = 2000
+
+
+@dataclass(frozen=True)
+class Score:
+    """How a model does on samples it has not seen.
+
+    Parameters
+    ----------
+    held_out_rms_deg : float
+        Of the angle, on the second half of the log.
+    outside : float
+        Part of those samples whose reading lay outside what the model knew.
+    us_per_sample : float
+        One step of its tracker, in us.
+    degree : int
+        Of its curve.
+    """
+
+    held_out_rms_deg: float
+    outside: float
+    us_per_sample: float
+    degree: int
+
+
+@dataclass(frozen=True, eq=False)
+class Calibration:
+    """A fitted sensor, and how good the fit is.
+
+    Parameters
+    ----------
+    model : Model
+        Fitted to the whole log.
+    plain : Curve
+        The characteristic curve by least squares alone; it may turn.
+    tried : dict of dict of float
+        Cross-validated error (deg) by model and degree.
+    n : int
+        Samples that were fitted.
+    sse, r2 : float
+        Of the plain curve, in dU/U0.
+    rms_deg : float
+        Residual of the model's angles on the whole log.
+    scores : dict of Score
+        By the model's name.
+    sensitivity_per_deg : (min, mean, max)
+        Of the plain curve over its monotone range, 1/deg.
+    monotone_range_deg : (low, high)
+    band : (k, 3) float
+        Angle (deg), and the ends of the plain curve's 95 % confidence band, dU/U0.
+    notes : tuple of str
+    """
+
+    model: Model
+    plain: Curve
+    tried: Mapping[str, Mapping[int, float]]
+    n: int
+    sse: float
+    r2: float
+    rms_deg: float
+    scores: Mapping[str, Score]
+    sensitivity_per_deg: tuple[float, float, float]
+    monotone_range_deg: tuple[float, float]
+    band: FloatArray
+    notes: tuple[str, ...]
+
+
+def calibrate(log: Prepared, *, model: str = "auto", degree: int | None = None) -> Calibration:
+    """Choose, fit and judge.
+
+    Parameters
+    ----------
+    log : Prepared
+    model : str
+        ``auto`` or a name of `calibration.strain.models.MODELS`.
+    degree : int, optional
+        Of the curve; chosen by cross-validation where it is not given.
+
+    Raises
+    ------
+    InputError
+        The log is too short, or goes one way only.
+    """
+    first, second = log.halves
+    if not first or not second:
+        raise InputError("one half of the log has no sample in the range of angles, so that nothing could be held out; record a longer log")
+    notes: list[str] = list(log.notes)
+    degrees = range(1, MAX_DEGREE + 1) if degree is None else (degree,)
+    tried: dict[str, dict[int, Trial]] = {}
+    for name in MODELS:
+        try:
+            tried[name] = {each: _trial(log, name, each) for each in degrees}
+        except InputError as fault:
+            if name == model:
+                raise
+            notes.append(f"model {name} was left out: {fault}")
+    if not tried:
+        raise InputError("no model can be fitted to each half of the log: " + notes[-1])
+    wanted = {name: _simplest(each) for name, each in tried.items()}
+    if model == "auto":
+        model = _simplest({name: tried[name][wanted[name]] for name in tried})
+    degree = wanted[model]
+    fitted = MODELS[model].fit(log.runs, degree=degree)
+    scores = {name: _score(MODELS[name].fit(log.only(first), degree=wanted[name]), log.only(second), wanted[name]) for name in tried}
+    angle = np.concatenate([run.angle[run.fit] for run in log.runs])
+    signal = np.concatenate([run.signal[run.fit] for run in log.runs])
+    plain = fit_curve(angle, signal, degree=degree)
+    residual = signal - plain.signal(angle)
+    sse = float(residual @ residual)
+    if not plain.monotone:
+        low, high = plain.monotone_range
+        notes.append(
+            f"the curve of degree {degree} turns outside {low:.1f} to {high:.1f} degrees, where a reading has two angles; "
+            "the best curve that does not turn is used for the way back"
+        )
+    low, high = plain.monotone_range
+    slopes = np.abs(plain.slope(np.linspace(low, high, 1001)))
+    return Calibration(
+        model=fitted,
+        plain=plain,
+        tried={name: {k: float(np.sqrt(trial.mean)) for k, trial in each.items()} for name, each in tried.items()},
+        n=len(angle),
+        sse=sse,
+        r2=1 - sse / float(np.sum((signal - signal.mean()) ** 2)),
+        rms_deg=_rms(angle_errors(fitted, log.runs)),
+        scores=scores,
+        sensitivity_per_deg=(float(slopes.min()), float(slopes.mean()), float(slopes.max())),
+        monotone_range_deg=(low, high),
+        band=_band(log, degree, plain),
+        notes=tuple(notes),
+    )
+
+
+def rms_on(log: Prepared, found: Calibration, other: Prepared) -> dict[str, float]:
+    """Error (deg) on another log of every model of a calibration, fitted to the whole of `log`."""
+    fitted = {name: MODELS[name].fit(log.runs, degree=score.degree) for name, score in found.scores.items()}
+    return {name: _rms(angle_errors(model, other.runs)) for name, model in fitted.items()}
+
+
+@dataclass(frozen=True, eq=False)
+class Trial:
+    """Mean squared errors (deg^2) of a model on groups of samples that took no part in its fit, and the groups' sizes."""
+
+    squares: FloatArray
+    sizes: FloatArray
+
+    @property
+    def mean(self) -> float:
+        """Over all samples."""
+        return float(np.average(self.squares, weights=self.sizes))
+
+
+def _trial(log: Prepared, name: str, degree: int) -> Trial:
+    """Fit without each trial in turn and judge on it; where no trials are marked, without each half."""
+    parts = [(k,) for k in log.labels] if log.marked else log.halves
+    squares, sizes = [], []
+    for part in parts:
+        model = MODELS[name].fit(log.only([k for k in log.labels if k not in part]), degree=degree)
+        for k in part:
+            errors = angle_errors(model, log.only([k]))
+            squares.append(float(np.mean(errors**2)))
+            sizes.append(len(errors))
+    return Trial(np.array(squares), np.array(sizes, dtype=float))
+
+
+def _simplest(tried: Mapping[Name, Trial]) -> Name:
+    """The first of what is tried (the simplest comes first) whose error is within one standard error of the least.
+
+    Groups differ from each other more than models do, so the difference is judged group by group.
+    """
+    best = min(tried.values(), key=lambda trial: trial.mean)
+    for name, trial in tried.items():
+        more = (trial.squares - best.squares) * trial.sizes / trial.sizes.mean()
+        if trial.mean - best.mean <= np.std(more, ddof=1) / np.sqrt(len(more)):
+            return name
+    raise AssertionError("the best is within any error of itself")
+
+
+def _score(model: Model, held_out: Sequence[Samples], degree: int) -> Score:
+    outside = np.concatenate([model.estimate(run.time, run.signal)[1][run.fit] for run in held_out])
+    return Score(_rms(angle_errors(model, held_out)), float(outside.mean()), step_us(model, held_out[0]), degree)
+
+
+def step_us(model: Model, run: Samples) -> float:
+    """The median of single steps, us."""
+    tracker, clock = model.tracker(), time.perf_counter
+    taken = []
+    for t, u in zip(run.time[:_TIMED].tolist(), run.signal[:_TIMED].tolist(), strict=True):
+        began = clock()
+        tracker.step(t, u)
+        taken.append(clock() - began)
+    return float(np.median(taken)) * 1e6
+
+
+def angle_errors(model: Model, runs: Sequence[Samples]) -> FloatArray:
+    """Estimated less true angle of the samples that count, deg."""
+    return np.concatenate([(model.estimate(run.time, run.signal)[0] - run.angle)[run.fit] for run in runs])
+
+
+def _rms(errors: FloatArray) -> float:
+    return float(np.sqrt(np.mean(errors**2)))
+
+
+def _band(log: Prepared, degree: int, plain: Curve) -> FloatArray:
+    """The 95 % confidence band of the plain curve, by leaving out a group at a time: neighbouring samples are not independent."""
+    from scipy.stats import t
+
+    at = np.linspace(plain.low, plain.high, 71)
+    curves = []
+    for left_out in log.labels:
+        runs = log.only([k for k in log.labels if k != left_out])
+        angle = np.concatenate([run.angle[run.fit] for run in runs])
+        signal = np.concatenate([run.signal[run.fit] for run in runs])
+        if len(angle) > degree + 1 and np.ptp(angle) > 0:
+            curves.append(fit_curve(angle, signal, degree=degree).signal(at))
+    k = len(curves)
+    middle = plain.signal(at)
+    if k < 2:
+        return np.column_stack([at, np.full_like(at, -np.inf), np.full_like(at, np.inf)])
+    spread = np.sqrt((k - 1) / k * np.sum((np.array(curves) - np.mean(curves, axis=0)) ** 2, axis=0))
+    half = t.ppf(0.975, k - 1) * spread
+    return np.column_stack([at, middle - half, middle + half])
