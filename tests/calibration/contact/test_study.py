@@ -1,4 +1,4 @@
-"""How good the detector is, and that the usual ways are worse on the same trials; docs/contact.md has seeds that took no part in its making."""
+"""How good the detector is, and that the usual ways are worse on the same trials (docs/contact.md: on seeds kept apart)."""
 
 import pytest
 
