@@ -150,6 +150,11 @@ def _cuts_power(_: Command, state: State) -> bool:
     return state.ink_follows
 
 
+def _ends_when_idle(command: Command, state: State) -> bool:
+    """S0 lets it stand for ever."""
+    return state.ink_follows and bool(command.words.get("S"))
+
+
 def _amid_the_ink(_: Command, state: State) -> bool:
     """Before it, a file may well set what the machine has; the unit is the driver's, so no value is wrong by itself."""
     return state.wet and state.ink_follows
@@ -234,6 +239,12 @@ RULES = (
     ),
     Rule(STOPS, _always, "{code} stops the machine at once: what follows is not printed", "take it out"),
     Rule(("M81",), _cuts_power, "M81 turns the power off before the last ink: what follows is not printed", "put it at the end"),
+    Rule(
+        ("M85",),
+        _ends_when_idle,
+        "M85 stops the machine for good where it waits longer than S seconds, as in a dwell",
+        "take it out, or send M85 S0",
+    ),
     Rule(
         ("M808",),
         _always,

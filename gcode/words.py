@@ -23,7 +23,7 @@ MOTORS_OFF = frozenset({"M18", "M84"})
 
 #: Commands whose words are read; any other line (messages, fans) is passed over as it stands.
 READ = HEATERS | SETTINGS | MOTORS_OFF | {"G0", "G1", "G2", "G3", "G4", "G5", "G20", "G21", "G28", "G90", "G91", "G92"}
-READ |= {"M3", "M4", "M5", "M82", "M83", "M206", "M218", "M220", "M221", "M280", "M302", "M401", "M900"}
+READ |= {"M3", "M4", "M5", "M82", "M83", "M85", "M206", "M218", "M220", "M221", "M280", "M302", "M401", "M900"}
 #: Codes of lines without a G, M or T: one that goes on with the last motion, and one that sets F or S and moves nothing.
 MODAL, SETTING = "X", "F"
 
