@@ -1,9 +1,11 @@
 #!/bin/sh
 # Calibrate both simulated fingers from their logs, then let the robot's follow the human's, as published and improved.
-# Usage, from the project's root with skinfab on the PATH: calibration/scripts/control.sh OUT
+# As README says: calibration/scripts/control.sh OUT
 set -eu
 out=${1:?give a folder to write into}
-logs=$(dirname "$0")/../logs
+here=$(dirname "$0")
+logs=$here/../logs
+skinfab() { "$here/../../.venv/bin/skinfab" "$@"; }
 for model in poly branches; do
   skinfab calibrate "$logs/human_finger.csv" --signal human_V --angle PIP_deg --range 10 80 --model $model --degree 3 -o "$out/human_$model"
   skinfab calibrate "$logs/robot_finger.csv" --signal robot_V --angle PIP_deg --range 10 80 --model $model --degree 4 -o "$out/robot_$model"

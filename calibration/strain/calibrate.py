@@ -25,6 +25,8 @@ Name = TypeVar("Name", str, int)
 
 #: The highest degree that is tried: the paper needed 3 and 4.
 MAX_DEGREE = 6
+#: A model whose error is above this part of the chosen one's did not do better to speak of.
+SAME = 0.95
 #: So many samples are timed, one by one.
 _TIMED = 2000
 
@@ -130,6 +132,14 @@ def calibrate(log: Prepared, *, model: str = "auto", degree: int | None = None) 
     degree = wanted[model]
     fitted = MODELS[model].fit(log.runs, degree=degree)
     scores = {name: _score(MODELS[name].fit(log.only(first), degree=wanted[name]), log.only(second), wanted[name]) for name in tried}
+    best = min(scores, key=lambda name: scores[name].held_out_rms_deg)
+    if scores[best].held_out_rms_deg < SAME * scores[model].held_out_rms_deg:
+        notes.append(
+            f"on the half held out {best} did better than {model}: {scores[best].held_out_rms_deg:.2f} against "
+            f"{scores[model].held_out_rms_deg:.2f} degrees; a longer log would tell whether that is chance"
+        )
+    if degree == MAX_DEGREE and len(degrees) > 1:
+        notes.append(f"the highest degree that is tried, {degree}, was chosen: the curve may need more, or the log is too short to tell")
     angle = np.concatenate([run.angle[run.fit] for run in log.runs])
     signal = np.concatenate([run.signal[run.fit] for run in log.runs])
     plain = fit_curve(angle, signal, degree=degree)
