@@ -140,10 +140,17 @@ def _against(time: FloatArray, angle: FloatArray, truth: FloatArray, delay: floa
         return {}
     out: dict[str, float | None] = {}
     for name, late in (("rms_deg", 0.0), ("rms_in_step_deg", delay)):
-        then = np.interp(time - late, time[known], truth[known], left=np.nan) if late else truth
+        then = _at_that_time(time - late, time[known], truth[known], float(np.median(np.diff(time)))) if late else truth
         counts = np.isfinite(angle) & np.isfinite(then) & (then >= limits[0]) & (then <= limits[1])
         out[name] = float(np.sqrt(np.mean((angle - then)[counts] ** 2))) if counts.any() else None
     return out
+
+
+def _at_that_time(when: FloatArray, time: FloatArray, truth: FloatArray, step: float) -> FloatArray:
+    """What was true at other moments; NaN in gaps, before the first and after the last."""
+    after = np.clip(np.searchsorted(time, when), 1, len(time) - 1)
+    then = np.interp(when, time, truth, left=np.nan, right=np.nan)
+    return np.where(time[after] - time[after - 1] < 1.5 * step, then, np.nan)
 
 
 def truth_column(stream: Stream, calibration: SensorCalibration) -> int | None:

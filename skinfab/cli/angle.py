@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import math
+import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -60,7 +61,11 @@ def run(args: argparse.Namespace) -> int:
     from skinfab.files import require_place
     from skinfab.readout.logs.log import write_log
 
+    if os.path.lexists(args.output):
+        raise InputError(f"{args.output} is there already, and logs are never overwritten; give another name")
     require_place(args.output)
+    if len({args.mcp, args.pip, args.dip}) < 3:
+        raise InputError(f"{args.mcp}, {args.pip} and {args.dip} must be three different markers")
     max_gap = MAX_GAP_S if args.max_gap is None else args.max_gap
     made = read_markers(args.capture)
     labels = {"mcp": args.mcp, "pip": args.pip, "dip": args.dip}

@@ -133,6 +133,7 @@ def _logged(args: argparse.Namespace) -> tuple[dict[str, list[Trial]], list[str]
     from calibration.contact.detector import detect
     from skinfab.errors import InputError
     from skinfab.progress import terminal_progress
+    from skinfab.readout.checks import check_times
     from skinfab.readout.logs.log import read_log
 
     trials, notes = [], []
@@ -140,7 +141,7 @@ def _logged(args: argparse.Namespace) -> tuple[dict[str, list[Trial]], list[str]
         for k, path in enumerate(args.logs):
             progress(k / len(args.logs), Path(path).name)
             log = read_log(path)
-            notes += list(log.notes)
+            notes += [*log.notes, *(f"{log.file}: {wrong}" for wrong in check_times(log.recording))]
             try:
                 found = detect(log.recording, false_alarms=args.false_alarms, channels=args.channel)
             except InputError as fault:

@@ -13,6 +13,8 @@ FloatArray = NDArray[np.float64]
 
 #: A stream is off its rate where the median step differs by more than this part: crystals are off by 1e-4.
 RATE_PART = 0.02
+#: A log without a count of frames has a hole where its time goes on by more than this, s, and by so many steps.
+HOLE_S, HOLE_STEPS = 0.5, 10
 #: A channel clips where it stays at its own least or most for at least this long in a row, s, more than once.
 CLIP_S = 0.05
 CLIPS = 2
@@ -42,7 +44,12 @@ def check(recording: Recording) -> list[str]:
     """
     if not len(recording):
         return ["there is no frame in it; record something"]
-    return [*_times(recording), *_missing(recording), *_channels(recording), *_forces(recording)]
+    return [*check_times(recording), *_channels(recording), *_forces(recording)]
+
+
+def check_times(recording: Recording) -> list[str]:
+    """What is wrong with its times alone: for who looks at the channels by himself."""
+    return [*_times(recording), *_missing(recording)] if len(recording) else []
 
 
 def _times(recording: Recording) -> list[str]:
@@ -64,6 +71,10 @@ def _times(recording: Recording) -> list[str]:
         rate = 1 / float(np.median(steps))
         if abs(rate - nominal) > RATE_PART * nominal:
             found.append(f"frames come at {rate:.4g} Hz, and the stream says {nominal:g}; check the device's clock")
+    if len(steps) and (holes := steps[steps > max(HOLE_S, HOLE_STEPS * float(np.median(steps)))]).size:
+        found.append(
+            f"its time has {holes.size:,} hole{'s' * (holes.size > 1)}, the longest of {holes.max():.3g} s; nothing is known of what was then"
+        )
     return found
 
 

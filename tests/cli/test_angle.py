@@ -32,7 +32,10 @@ def test_a_capture_as_a_log(tmp_path: Path, capsys: pytest.CaptureFixture[str], 
     there = np.isfinite(angles)
     assert np.flatnonzero(~there).tolist() == list(range(100, 130))
     assert np.abs(angles - truth)[there].max() < 0.1 and result["max_deg"] == pytest.approx(110, abs=0.01)
-    assert main(["angle", str(tmp_path / f"a.{kind}"), *WORDS, "-o", str(out), "--max-gap", "0"]) == 0
+    before = out.read_bytes()
+    assert main(["angle", str(tmp_path / f"a.{kind}"), *WORDS, "-o", str(out)]) == 1
+    assert "is there already, and logs are never overwritten" in capsys.readouterr().err and out.read_bytes() == before
+    assert main(["angle", str(tmp_path / f"a.{kind}"), *WORDS, "-o", str(tmp_path / "more.csv"), "--max-gap", "0"]) == 0
     assert "35 without an angle" in capsys.readouterr().out
 
 
@@ -63,7 +66,7 @@ def test_beside_readings_for_calibrate(tmp_path: Path, capsys: pytest.CaptureFix
     ("words", "status", "says"),
     [
         (["--mcp", "TIP", *WORDS[2:], "-o", "x.csv"], 1, "no marker 'TIP'"),
-        (["--mcp", "PIP", "--pip", "PIP", "--dip", "PIP", "-o", "x.csv"], 1, "no frame"),
+        (["--mcp", "PIP", "--pip", "PIP", "--dip", "PIP", "-o", "x.csv"], 1, "must be three different markers"),
         ([*WORDS, "-o", "none/x.csv"], 1, "folder does not exist"),
         ([*WORDS, "-o", "x.txt"], 1, ".txt is no log"),
         ([*WORDS, "-o", "x.csv", "--log", "none.csv"], 1, "none.csv"),

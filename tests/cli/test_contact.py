@@ -69,6 +69,13 @@ def test_words_for_people(log: Callable[..., str], tmp_path: Path, capsys: pytes
     assert "1 contacts in 1 trial" in said.out and "-20" in said.out and "S1" not in said.out and said.err == ""
 
 
+def test_a_hole_in_the_log_is_said(log: Callable[..., str], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    lines = Path(log()).read_text().splitlines(keepends=True)
+    (tmp_path / "hole.csv").write_text("".join(lines[:1000] + lines[1400:]))
+    assert main(["contact", str(tmp_path / "hole.csv"), "-o", str(tmp_path / "o"), "--json"]) == 0
+    assert any("its time has 1 hole, the longest of 4.01 s" in note for note in json.loads(capsys.readouterr().out)["notes"])
+
+
 def test_fewer_false_alarms_ask_for_more(log: Callable[..., str], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     thresholds = []
     for rate in ("5", "0.01"):

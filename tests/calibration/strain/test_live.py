@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from calibration.strain.live import Live, drawn
+from calibration.strain.live import Live, _against, drawn
 from skinfab.errors import InputError
 from skinfab.readout.bridge import QuarterBridge
 from skinfab.readout.frame import Channel, Recording, Stream
@@ -74,3 +74,13 @@ def test_names_that_clash() -> None:
     made = Recording.of_values(Stream("a", (Channel("time_s"),), 100.0), np.ones((3, 1)), device_time=np.arange(3.0))
     with pytest.raises(InputError, match="'time_s'"):
         Live(made.stream, made, None)
+
+
+@pytest.mark.parametrize("gap", [slice(0, 0), slice(1500, 1800), slice(2600, 3000), slice(0, 400)], ids=["none", "middle", "end", "start"])
+def test_the_delay_is_taken_off_but_gaps_are_not_bridged(gap: slice) -> None:
+    time = np.arange(3000) / 100
+    truth = 45 - 30 * np.cos(time)
+    late = np.interp(time - 0.08, time, truth)
+    truth[gap] = np.nan
+    found = _against(time, late, truth, 0.08, (10.0, 80.0))
+    assert found["rms_in_step_deg"] == pytest.approx(0, abs=0.02) and found["rms_deg"] == pytest.approx(30 * 0.08 / 2**0.5, rel=0.1)
