@@ -72,9 +72,8 @@ def _times(recording: Recording) -> list[str]:
         if abs(rate - nominal) > RATE_PART * nominal:
             found.append(f"frames come at {rate:.4g} Hz, and the stream says {nominal:g}; check the device's clock")
     if len(steps) and (holes := steps[steps > max(HOLE_S, HOLE_STEPS * float(np.median(steps)))]).size:
-        found.append(
-            f"its time has {holes.size:,} hole{'s' * (holes.size > 1)}, the longest of {holes.max():.3g} s; nothing is known of what was then"
-        )
+        many = f"{holes.size:,} hole{'s' * (holes.size > 1)}"
+        found.append(f"its time has {many}, the longest of {holes.max():.3g} s; nothing is known of what was then")
     return found
 
 
