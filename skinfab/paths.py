@@ -6,6 +6,8 @@ pattern that draws it to the G-code that prints it; only a preview asks for a po
 
 from __future__ import annotations
 
+import itertools
+import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TypeAlias
@@ -17,6 +19,9 @@ from skinfab.errors import InputError
 from skinfab.tolerances import JOIN_MM
 
 Point = NDArray[np.float64]  # (2,) mm
+
+#: Where a circle reaches furthest, from its centre: along +x, +y, -x, -y.
+_AXES = ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))
 
 
 class PathError(InputError):
@@ -53,11 +58,11 @@ class Arc:
         if not 0 < abs(self.sweep) <= 2 * np.pi:
             raise PathError(f"arc sweep is {self.sweep:g} rad; it must be between 0 and one turn")
 
-    @property
+    @cached_property
     def start(self) -> Point:
         return self.point_at(0.0)
 
-    @property
+    @cached_property
     def end(self) -> Point:
         return self.point_at(1.0)
 
@@ -69,22 +74,27 @@ class Arc:
     @cached_property
     def bbox(self) -> NDArray[np.float64]:
         """Exact bounding box as ((xmin, ymin), (xmax, ymax)), mm."""
-        # Extremes lie at the two ends and wherever the arc crosses an axis direction.
-        axes = np.arange(4) * np.pi / 2
-        turned = np.sign(self.sweep) * (axes - self.start_angle) % (2 * np.pi)
-        crossed = axes[turned <= abs(self.sweep)]
-        corners = self.centre + self.radius * np.c_[np.cos(crossed), np.sin(crossed)]
-        points = np.vstack([self.start, self.end, corners])
-        return np.array([points.min(axis=0), points.max(axis=0)])
+        # Extremes lie at the two ends and wherever the arc crosses an axis direction. Few numbers: arrays would take longer.
+        (x, y), sign = self.centre.tolist(), math.copysign(1.0, self.sweep)
+        points = [self.start.tolist(), self.end.tolist()]
+        for k, (ux, uy) in enumerate(_AXES):
+            if sign * (k * np.pi / 2 - self.start_angle) % (2 * np.pi) <= abs(self.sweep):
+                points.append([x + self.radius * ux, y + self.radius * uy])
+        xs, ys = zip(*points, strict=True)
+        return np.array([[min(xs), min(ys)], [max(xs), max(ys)]])
 
     def point_at(self, fraction: ArrayLike) -> Point:
         """Points at `fraction` of the way along, (..., 2) mm."""
         angle = self.start_angle + self.sweep * np.asarray(fraction, dtype=float)
-        return self.centre + self.radius * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+        points = np.empty((*angle.shape, 2))
+        points[..., 0], points[..., 1] = np.cos(angle), np.sin(angle)
+        points *= self.radius
+        points += self.centre
+        return points
 
     def transformed(self, *, angle: float, shift: ArrayLike) -> Arc:
         """Turned about the origin by `angle` rad, then moved by `shift` mm."""
-        return Arc(_turn(self.centre, angle) + np.asarray(shift, dtype=float), self.radius, self.start_angle + angle, self.sweep)
+        return Arc(_moved(self.centre, angle, shift), self.radius, self.start_angle + angle, self.sweep)
 
     def reversed(self) -> Arc:
         return Arc(self.centre, self.radius, self.start_angle + self.sweep, -self.sweep)
@@ -113,7 +123,7 @@ class Line:
     def __post_init__(self) -> None:
         object.__setattr__(self, "start", np.asarray(self.start, dtype=float))
         object.__setattr__(self, "end", np.asarray(self.end, dtype=float))
-        if not np.isfinite([self.start, self.end]).all():
+        if not all(map(math.isfinite, (*self.start, *self.end))):
             raise PathError(f"line from {self.start} to {self.end}: its ends must be finite")
 
     @property
@@ -133,7 +143,7 @@ class Line:
 
     def transformed(self, *, angle: float, shift: ArrayLike) -> Line:
         """Turned about the origin by `angle` rad, then moved by `shift` mm."""
-        return Line(_turn(self.start, angle) + np.asarray(shift, dtype=float), _turn(self.end, angle) + np.asarray(shift, dtype=float))
+        return Line(_moved(self.start, angle, shift), _moved(self.end, angle, shift))
 
     def reversed(self) -> Line:
         return Line(self.end, self.start)
@@ -172,8 +182,8 @@ class Path:
         object.__setattr__(self, "segments", tuple(self.segments))
         if not self.segments:
             raise PathError("a path needs at least one segment")
-        for k, (one, two) in enumerate(zip(self.segments, self.segments[1:], strict=False)):
-            gap = float(np.hypot(*(two.start - one.end)))
+        for k, (one, two) in enumerate(itertools.pairwise(self.segments)):
+            gap = math.dist(one.end, two.start)
             if gap > JOIN_MM:
                 raise PathError(f"segment {k + 1} starts {gap:.3g} mm from the end of segment {k}; they must meet")
 
@@ -221,6 +231,8 @@ class Path:
         return np.vstack([parts[0], *(p[1:] for p in parts[1:])])
 
 
-def _turn(point: Point, angle: float) -> Point:
+def _moved(point: Point, angle: float, shift: ArrayLike) -> Point:
     c, s = np.cos(angle), np.sin(angle)
-    return np.array([c * point[0] - s * point[1], s * point[0] + c * point[1]])
+    x, y = point
+    dx, dy = np.asarray(shift, dtype=float)
+    return np.array([c * x - s * y + dx, s * x + c * y + dy])
