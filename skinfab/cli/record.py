@@ -6,6 +6,7 @@ import argparse
 import json
 import sys
 import threading
+import time
 from contextlib import contextmanager
 from dataclasses import asdict
 from pathlib import Path
@@ -14,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 from skinfab.cli import steps
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterator, Sequence
 
     from skinfab.readout.paced import PacedFrames
     from skinfab.readout.record import State
@@ -23,6 +24,8 @@ if TYPE_CHECKING:
 SIMULATOR = "simulator"
 #: A larger recording is not read again at its end to be checked.
 _CHECKED_BYTES = 200_000_000
+#: Sentences on a port that came and went.
+_OUTAGES = 4
 
 
 def baud(text: str) -> int:
@@ -68,9 +71,11 @@ def run(args: argparse.Namespace) -> int:
 
     require_new(args.output)
     with _source(args) as source, Recorder(args.output, source.stream) as recorder:
-        with _shown(quiet=args.json, counts=lambda: source.counts) as show, _ended_by_signals() as stop:
+        began = time.time()
+        with _shown(quiet=args.json, source=source) as show, _ended_by_signals() as stop:
             record(source, recorder, seconds=args.seconds, told=show, stop=stop)
-        counts = asdict(source.counts)
+        counts, gone = asdict(source.counts), outages(source, began, time.time())
+    notes = _notes(counts, args.output, recorder.bytes) if recorder.frames else ["no frame came; no file was left"]
     result: dict[str, Any] = {
         "file": str(args.output),
         "stream": source.stream.name,
@@ -79,7 +84,8 @@ def run(args: argparse.Namespace) -> int:
         "frames": recorder.frames,
         "bytes": recorder.bytes,
         "counts": counts,
-        "notes": _notes(counts, args.output, recorder.bytes) if recorder.frames else ["no frame came; no file was left"],
+        "outages": gone,
+        "notes": [*outage_notes(args.port, gone), *notes],
     }
     if args.json:
         print(json.dumps(result, allow_nan=False))
@@ -118,17 +124,18 @@ def _ended_by_signals() -> Iterator[threading.Event]:
 
 
 @contextmanager
-def _shown(*, quiet: bool, counts: Callable[[], Any]) -> Iterator[Callable[[State], None]]:
+def _shown(*, quiet: bool, source: SerialPort | PacedFrames) -> Iterator[Callable[[State], None]]:
     """A line on standard error that is written anew every second, where that is a terminal."""
     if quiet or not sys.stderr.isatty():
         yield lambda state: None
         return
 
     def show(state: State) -> None:
-        now = counts()
+        now = source.counts
+        gone = "PORT GONE  " if any(not each["back"] for each in outages(source, time.time(), time.time())) else ""
         print(
-            f"\r\x1b[K{_clock(state.seconds)}  {state.frames:,} frames  {state.rate_hz:.1f} Hz  {state.bytes / 1e6:.1f} MB  "
-            f"lost {now.lost}  bad {now.bad}  late {now.late}  "
+            f"\r\x1b[K{_clock(state.seconds)}  {gone}{state.frames:,} frames  {state.rate_hz:.1f} Hz  "
+            f"{state.bytes / 1e6:.1f} MB  lost {now.lost}  bad {now.bad}  late {now.late}  "
             f"disk {state.free_bytes / 1e9:.1f} GB left, {_clock(state.room_s)}  (Ctrl-C ends)",
             end="",
             file=sys.stderr,
@@ -153,6 +160,47 @@ def _clock(seconds: float) -> str:
         return f"{seconds / 86_400:.0f} days" if seconds < 36_500 * 86_400 else "for ever"
     minutes, rest = divmod(int(seconds), 60)
     return f"{minutes // 60}:{minutes % 60:02}:{rest:02}" if minutes >= 60 else f"{minutes}:{rest:02}"
+
+
+def outages(source: SerialPort | PacedFrames, began: float, ended: float) -> list[dict[str, Any]]:
+    """When a port was gone between two moments (s since 1970), ready for JSON; a simulator never is."""
+    from skinfab.readout.serial_port import SerialPort
+
+    if not isinstance(source, SerialPort):
+        return []
+    return [
+        {
+            "after_s": round(max(each.began - began, 0.0), 3),
+            "lasted_s": round(max((ended if each.ended is None else each.ended) - max(each.began, began), 0.0), 3),
+            "back": each.ended is not None,
+        }
+        for each in source.outages
+    ]
+
+
+def outage_notes(port: str, gone: Sequence[dict[str, Any]]) -> list[str]:
+    """A sentence on each time the port was gone, on the first few where there are many.
+
+    Examples
+    --------
+    >>> outage_notes("/dev/ttyACM0", [{"after_s": 1.25, "lasted_s": 2.5, "back": False}])
+    ['/dev/ttyACM0 was gone from 1.2 s on and did not come back: the last 2.5 s are missing; look at its cable']
+    """
+    notes = [
+        f"{port} was gone from {each['after_s']:.1f} s on, for {each['lasted_s']:.1f} s; look at its cable"
+        if each["back"]
+        else f"{port} was gone from {each['after_s']:.1f} s on and did not come back: the last {each['lasted_s']:.1f} s are missing; "
+        "look at its cable"
+        for each in gone
+    ]
+    if len(notes) <= _OUTAGES:
+        return notes
+    rest = gone[_OUTAGES - 2 : -1]
+    return [
+        *notes[: _OUTAGES - 2],
+        f"{port} was gone {len(rest)} more times, for {sum(each['lasted_s'] for each in rest):.1f} s",
+        notes[-1],
+    ]
 
 
 def _notes(counts: dict[str, int], path: Path, size: int) -> list[str]:

@@ -59,7 +59,7 @@ def run(args: argparse.Namespace) -> int:
     found = check(log.recording)
     if args.serve:
         steps.say([*log.notes, *found])
-        return _serve(source)
+        return _serve(source, len(log.recording))
     with terminal_progress(quiet=args.json) as progress:
         columns, facts = _through(args, source, log, calibration, progress)
     result = {
@@ -93,7 +93,7 @@ def _calibration(path: Path | None) -> SensorCalibration | None:
     return load_calibration(path)
 
 
-def _serve(source: Replay) -> int:
+def _serve(source: Replay, frames: int) -> int:
     import time
 
     from skinfab.readout.packets import FRAME_64
@@ -106,7 +106,12 @@ def _serve(source: Replay) -> int:
         # Python 3.11 takes a thread for ended if an interrupt comes while one waits for it: wait beside it.
         while not server.wait(0):
             time.sleep(0.1)
-    print(f"{server.sent} frames sent")
+    if server.left:
+        steps.say(
+            [f"the reader closed the port before the log's end, and did not come back: {server.sent:,} of {frames:,} frames were sent"]
+        )
+    else:
+        print(f"{server.sent} frames sent")
     return 0
 
 

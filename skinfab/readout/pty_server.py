@@ -28,6 +28,9 @@ SETTLE_S = 0.05
 _DRAIN_S = 2.0
 _POLL_S = 0.002
 _EMPTY_POLLS = 25
+#: Where nothing may be lost, it is looked this often whether the reader is still there, s; one that is gone may take so long to
+#: come back.
+_LOOK_S, _GONE_S = 0.5, 1.0
 
 
 class PtyServer:
@@ -42,7 +45,8 @@ class PtyServer:
     frames : iterable of Frame
         May be endless. Asked for when it is time to send the next one.
     rate_hz : float, optional
-        Frames a second; those of the stream where it is left out. 0: as fast as they are read, and none is lost.
+        Frames a second; those of the stream where it is left out. 0: as fast as they are read, and none is lost; a reader
+        that leaves then ends it.
     kind : int
         Of the packets: `skinfab.readout.packets.FRAME_32` or `FRAME_64`.
     ascii_lines : bool
@@ -55,6 +59,8 @@ class PtyServer:
         A link to the pseudo-terminal; it stays the same when the port goes and comes back.
     sent, unsent : int
         Frames.
+    left : bool
+        The reader closed the port before it had all, and did not come back.
     """
 
     def __init__(
@@ -75,6 +81,8 @@ class PtyServer:
         self._folder = tempfile.TemporaryDirectory(prefix="skinfab-port-")
         self.path = Path(self._folder.name) / "port"
         self.sent = self.unsent = 0
+        self.left = False
+        self._look_at = 0.0
         self._stop = threading.Event()
         self._fault: BaseException | None = None
         self._thread = threading.Thread(target=self._run, name="pseudo-terminal", daemon=True)
@@ -124,25 +132,46 @@ class PtyServer:
                 went = self._send(self._wire.carry(packet) if is_frame else self._wire.hurt(packet))
                 if is_frame:
                     self.sent, self.unsent = self.sent + went, self.unsent + (not went)
-            self._drain()
+            if not self.left:
+                self._drain()
         except BaseException as fault:  # told by stop, in the thread that can be told
             self._fault = fault
         finally:
             self._pull_out()
 
     def _wait_for_reader(self) -> None:
-        poll = select.poll()
-        poll.register(self._master, 0)
-        while poll.poll(0) and not self._stop.wait(_POLL_S):
-            pass
+        self._open_by(None)
         # From here on it is kept open by us too, so that a reader may go and come back.
         self._other_end = os.open(os.readlink(self.path), os.O_RDWR | os.O_NOCTTY)
         self._stop.wait(SETTLE_S)
+
+    def _open_by(self, until: float | None) -> bool:
+        """Wait for somebody to have the port open; False where nobody came in time (of `time.monotonic`), or it is to stop."""
+        poll = select.poll()
+        poll.register(self._master, 0)
+        while poll.poll(0):
+            if self._stop.wait(_POLL_S) or (until is not None and time.monotonic() >= until):
+                return False
+        return True
+
+    def _look(self) -> None:
+        """Is the reader still there? Only while our own hold is let go does the terminal show it."""
+        if time.monotonic() < self._look_at:
+            return
+        os.close(self._other_end)
+        there = self._open_by(time.monotonic() + _GONE_S)
+        self._other_end = os.open(os.readlink(self.path), os.O_RDWR | os.O_NOCTTY)
+        self.left = not there and not self._stop.is_set()
+        self._look_at = time.monotonic() + _LOOK_S
 
     def _due(self) -> Iterator[tuple[bytes, bool]]:
         """Packets when it is time for them, and whether each one is a frame."""
         described = -1.0
         for k, frame in enumerate(self._timed()):
+            if not self._rate:
+                self._look()
+                if self.left:
+                    return
             if k in self._faults.unplugged:
                 self._pull_out()
                 self._stop.wait(self._faults.unplugged[k])
@@ -188,6 +217,9 @@ class PtyServer:
                 view = view[os.write(self._master, view) :]
             except BlockingIOError:
                 if self._rate or self._stop.is_set():
+                    return False
+                self._look()
+                if self.left:
                     return False
                 select.select([], [self._master], [], _POLL_S)
         return True

@@ -6,7 +6,7 @@ import termios
 import threading
 from collections import deque
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
@@ -27,6 +27,20 @@ LOOK_AGAIN_S = 0.1
 WAITING = 8192
 
 _POLL_S = 0.5
+
+
+@dataclass(frozen=True)
+class Outage:
+    """A time without the port.
+
+    Parameters
+    ----------
+    began, ended : float, s since 1970
+        By the clock of the frames' `host_time`; `ended` is None while it is not back.
+    """
+
+    began: float
+    ended: float | None = None
 
 
 class SerialPort:
@@ -72,7 +86,8 @@ class SerialPort:
         self._newest: Frame | None = None
         self._fault: BaseException | None = None
         self._closing = threading.Event()
-        self._bytes = self._frames = self._overrun = self._reopened = self._unchecked = 0
+        self._bytes = self._frames = self._overrun = self._unchecked = 0
+        self._outages: list[Outage] = []
 
     @property
     def stream(self) -> Stream:
@@ -92,8 +107,14 @@ class SerialPort:
                 bad=self._decoder.bad,
                 late=self._order.late,
                 unchecked=self._unchecked,
-                reopened=self._reopened + self._order.restarts,
+                reopened=sum(each.ended is not None for each in self._outages) + self._order.restarts,
             )
+
+    @property
+    def outages(self) -> tuple[Outage, ...]:
+        """When the port was gone, in order; the last may last still."""
+        with self._news:
+            return tuple(self._outages)
 
     def open(self) -> Self:
         """Open the port and wait until it has said what its channels are.
@@ -211,6 +232,7 @@ class SerialPort:
         with self._hold:
             self._device.close()
         with self._news:
+            self._outages.append(Outage(self._clock.now()))
             self._decoder.reset()
             self._order.reopened()
         while not self._closing.wait(LOOK_AGAIN_S):
@@ -219,7 +241,7 @@ class SerialPort:
             except (OSError, termios.error):
                 continue
             with self._news:
-                self._reopened += 1
+                self._outages[-1] = replace(self._outages[-1], ended=self._clock.now())
             return True
         return False
 

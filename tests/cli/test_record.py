@@ -1,6 +1,7 @@
 """skinfab record as it is called: a simulator, a port, Ctrl-C, and what cannot be."""
 
 import io
+import itertools
 import json
 import re
 import signal
@@ -12,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from skinfab.cli.main import main
+from skinfab.cli.record import outage_notes
 from skinfab.readout.faults import Faults
 from skinfab.readout.logs.log import read_log
 from skinfab.readout.pty_server import PtyServer
@@ -40,7 +42,26 @@ def test_a_port_is_recorded_and_what_went_wrong_is_said(tmp_path: Path, capsys: 
     assert result["counts"]["reopened"] == 1 and result["counts"]["bad"] > 10 and result["counts"]["lost"] > 5
     for words in ("pieces were no packet", "frames came late or a second time"):
         assert any(words in note for note in result["notes"])
-    assert any("the port was gone" in note for note in result["notes"])
+    (gone,) = result["outages"]
+    assert gone["back"] and 0.3 < gone["after_s"] < 0.8 and 0.1 < gone["lasted_s"] < 0.6
+    assert any(f"was gone from {gone['after_s']:.1f} s on, for {gone['lasted_s']:.1f} s" in note for note in result["notes"])
+
+
+def test_a_port_that_vanished_for_good_is_said_with_when_and_how_long(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    with PtyServer(STREAM, itertools.islice(strain_frames(STREAM), 100)) as device:
+        assert main(["record", str(device.path), "-o", str(tmp_path / "a.frames"), "--seconds", "2", "--json"]) == 0
+    result = json.loads(capsys.readouterr().out)
+    (gone,) = result["outages"]
+    assert result["frames"] == 100 and result["counts"]["lost"] == 0  # by the device's count nothing is missing: only this tells
+    assert not gone["back"] and gone["after_s"] + gone["lasted_s"] == pytest.approx(2.0, abs=0.2) and gone["lasted_s"] > 1
+    (note,) = result["notes"]
+    assert f"did not come back: the last {gone['lasted_s']:.1f} s are missing" in note
+
+
+def test_many_outages_are_a_few_sentences() -> None:
+    gone = [{"after_s": float(k), "lasted_s": 0.5, "back": k < 9} for k in range(10)]
+    notes = outage_notes("P", gone)
+    assert len(notes) == 4 and notes[2] == "P was gone 7 more times, for 3.5 s" and "did not come back" in notes[3]
 
 
 def test_lines_without_a_checksum_are_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

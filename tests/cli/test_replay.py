@@ -132,6 +132,20 @@ def test_served_over_a_pseudo_terminal(tmp_path: Path) -> None:
     assert np.array_equal(np.array(got), short.values)
 
 
+def test_serving_ends_where_its_reader_leaves(tmp_path: Path) -> None:
+    from skinfab.readout.serial_port import SerialPort
+
+    write_log(recording(), tmp_path / "a.mcap")
+    command = [sys.executable, "-m", "skinfab", "replay", str(tmp_path / "a.mcap"), "--serve", "--speed"]
+    for speed in ("max", "1"):  # at the first it waits for room in the terminal, at the second for the next frame
+        with subprocess.Popen([*command, speed], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+            assert process.stdout is not None
+            with SerialPort(process.stdout.readline().strip()) as port:
+                assert port.read(timeout=2.0) is not None
+            said = process.communicate(timeout=20)[1].splitlines()[-1]
+        assert process.returncode == 0 and "the reader closed the port before the log's end" in said and "of 3,200 frames" in said
+
+
 def test_serving_can_be_interrupted(tmp_path: Path) -> None:
     write_log(recording(), tmp_path / "a.mcap")
     command = [sys.executable, "-m", "skinfab", "replay", str(tmp_path / "a.mcap"), "--serve"]
