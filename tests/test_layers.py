@@ -15,7 +15,7 @@ ALLOWED = {
     "skinfab": {"skinfab"},
     "gcode": {"skinfab", "gcode"},
     "calibration": {"skinfab", "calibration"},
-    "gui": {"skinfab", "gcode", "gui"},
+    "gui": {"skinfab", "gcode", "calibration", "gui"},
 }
 
 #: Inside skinfab, ground floor first. A room imports its own floor and those below; `skinfab/cli` is the roof.

@@ -1,0 +1,71 @@
+"""Undo and redo: documents are values, so the past is a list of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Generic, TypeVar
+
+T = TypeVar("T")
+
+#: Steps that can be undone. Documents share their arrays, so a step costs what it changed.
+MOST_STEPS = 200
+
+
+@dataclass
+class History(Generic[T]):
+    """A value, those before it and those undone.
+
+    Parameters
+    ----------
+    now : T
+
+    Examples
+    --------
+    >>> history = History(1)
+    >>> history.do("two", 2); history.do("three", 3)
+    >>> history.undo(), history.undo(), history.redo(), history.now
+    ('three', 'two', 'two', 2)
+    """
+
+    now: T
+    _past: list[tuple[str, T]] = field(default_factory=list)
+    _future: list[tuple[str, T]] = field(default_factory=list)
+    _merging: object = None
+
+    def do(self, label: str, value: T, *, merge: object = None) -> None:
+        """Make `value` the present; what was undone is forgotten.
+
+        Steps in a row with the same `merge`, such as those of one drag, are undone as one.
+        """
+        if merge is None or merge != self._merging or not self._past:
+            self._past.append((label, self.now))
+            del self._past[:-MOST_STEPS]
+        self._merging = merge
+        self._future.clear()
+        self.now = value
+
+    def undo(self) -> str | None:
+        """Go one step back; the label of the step, or None where there is none."""
+        return self._step(self._past, self._future)
+
+    def redo(self) -> str | None:
+        """Go one step forth again; its label, or None."""
+        return self._step(self._future, self._past)
+
+    @property
+    def undo_label(self) -> str | None:
+        """What `undo` would take back."""
+        return self._past[-1][0] if self._past else None
+
+    @property
+    def redo_label(self) -> str | None:
+        """What `redo` would do again."""
+        return self._future[-1][0] if self._future else None
+
+    def _step(self, source: list[tuple[str, T]], target: list[tuple[str, T]]) -> str | None:
+        if not source:
+            return None
+        label, value = source.pop()
+        target.append((label, self.now))
+        self.now, self._merging = value, None
+        return label
