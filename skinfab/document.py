@@ -23,7 +23,7 @@ from skinfab.mesh.model import Mesh
 from skinfab.patterns.registry import make_pattern, parameters
 from skinfab.pieces import Piece
 from skinfab.placement.sensor import ID, ID_WORDS, Sensor
-from skinfab.skin import Skin, Source
+from skinfab.skin import SeamMarks, Skin, Source
 
 #: Version of `skin.json`. A reader takes its own and older ones.
 SCHEMA = 1
@@ -51,6 +51,10 @@ def save_skin(skin: Skin, path: str | Path) -> None:
     for k, piece in enumerate(skin.pieces):
         for field in ("faces", "vertices", "F", "UV"):
             arrays[f"pieces/{k}/{field}"] = getattr(piece, field)
+    if skin.marks is not None and not skin.marks.empty:
+        for field in ("locked", "forbidden"):
+            arrays[f"marks/{field}"] = np.asarray(getattr(skin.marks, field)).reshape(-1, 2)
+        arrays["marks/preference"] = skin.marks.preference
     with atomic_path(path) as partial:
         write_archive(partial, text={"skin.json": json.dumps(_describe(skin), indent=1, allow_nan=False) + "\n"}, arrays=arrays)
 
@@ -123,7 +127,12 @@ def _describe(skin: Skin) -> dict[str, Any]:
         "seed": int(skin.seed),
         # Left out where it says nothing: such a document is the same as those of releases that knew no thickness.
         **({"thickness": {"thickness_mm": float(skin.thickness), "neutral": float(skin.neutral)}} if _is_thick(skin) else {}),
+        **({} if skin.marks is None or skin.marks.empty else {"marks": _describe_marks(skin.marks)}),
     }
+
+
+def _describe_marks(marks: SeamMarks) -> dict[str, int]:
+    return {"n_locked": len(marks.locked), "n_forbidden": len(marks.forbidden)}
 
 
 def _is_thick(skin: Skin) -> bool:
@@ -162,7 +171,20 @@ def _build(data: dict[str, Any], archive: Archive) -> Skin:
         thickness=thickness,
         neutral=neutral,
         object_V=archive.array("object/V", "<f8", mesh.V.shape) if thickness * neutral > 0 else None,
+        marks=_marks(_get(data, "marks", dict, "skin.json"), mesh, archive) if "marks" in data else None,
     )
+
+
+def _marks(entry: dict[str, Any], mesh: Mesh, archive: Archive) -> SeamMarks:
+    pairs = {}
+    for field in ("locked", "forbidden"):
+        pairs[field] = archive.array(f"marks/{field}", "<i8", (_get(entry, f"n_{field}", int, "skin.json, marks"), 2))
+        if (mesh.topology.edge_ids(pairs[field]) < 0).any():
+            raise InputError(f"marks/{field}.npy names two vertices that no edge of the mesh joins; it comes from another skin")
+    preference = archive.array("marks/preference", "<i8", (len(mesh.F),))
+    if (np.abs(preference.clip(-2, 2)) > 1).any():  # clipped: the least int64 has no absolute value
+        raise InputError("marks/preference.npy holds a number other than -1 (avoid), 0 and 1 (attract)")
+    return SeamMarks(pairs["locked"], pairs["forbidden"], preference.astype(np.int8))
 
 
 def _thickness(data: dict[str, Any]) -> tuple[float, float]:

@@ -37,6 +37,42 @@ class Source:
 
 
 @dataclass(frozen=True, eq=False)
+class SeamMarks:
+    """What a person decided about where seams may run.
+
+    Parameters
+    ----------
+    locked : (k, 2) int64
+        Mesh vertex pairs: seam edges that stay seams when the object is cut automatically.
+    forbidden : (k, 2) int64
+        Mesh vertex pairs: edges that are never cut.
+    preference : (m,) int8
+        Per mesh face: +1 attracts seams, -1 repels them, 0 leaves them alone.
+
+    Examples
+    --------
+    >>> marks = SeamMarks.none(3)
+    >>> marks.empty, marks.preference.tolist()
+    (True, [0, 0, 0])
+    """
+
+    locked: NDArray[np.int64]
+    forbidden: NDArray[np.int64]
+    preference: NDArray[np.int8]
+
+    @staticmethod
+    def none(n_faces: int) -> SeamMarks:
+        """Marks of a mesh with that many faces which say nothing."""
+        no_edges = np.zeros((0, 2), dtype=np.int64)
+        return SeamMarks(no_edges, no_edges, np.zeros(n_faces, dtype=np.int8))
+
+    @property
+    def empty(self) -> bool:
+        """Whether they say nothing."""
+        return not (len(self.locked) or len(self.forbidden) or self.preference.any())
+
+
+@dataclass(frozen=True, eq=False)
 class Skin:
     """A mesh with its seams, flat pieces and sensors.
 
@@ -60,6 +96,8 @@ class Skin:
         How far through the skin, from its inner side (0 to 1), the surface lies that bending does not stretch.
     object_V : (n, 3) float64, mm, optional
         The object's own vertices, where `mesh` has others.
+    marks : SeamMarks, optional
+        Where seams may run; None where nothing was decided.
     """
 
     mesh: Mesh
@@ -74,6 +112,7 @@ class Skin:
     thickness: float = 0.0
     neutral: float = 0.5
     object_V: NDArray[np.float64] | None = None
+    marks: SeamMarks | None = None
 
     @cached_property
     def object(self) -> Mesh:
