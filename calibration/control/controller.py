@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Literal, Protocol
+from typing import Literal, NamedTuple, Protocol
 
 from calibration.control.lead import Lead
 from calibration.control.observer import JointObserver
@@ -43,6 +43,14 @@ class Input:
     column: int = 0
 
 
+class Beyond(NamedTuple):
+    """What lies outside the calibrated ranges, so that the end of the range was taken instead."""
+
+    human: bool = False  # the human's reading
+    target: bool = False  # the angle aimed at, which the robot's curve does not have
+    robot: bool = False  # the robot's reading
+
+
 @dataclass(frozen=True)
 class Command:
     """What the joint is told, and why.
@@ -56,8 +64,8 @@ class Command:
         Why it is not ``run``; else empty.
     target, angle : float, deg
         Of the human's joint and of the robot's as they are believed to be; the last ones while not running.
-    outside : bool
-        A reading or the target lies outside what the calibrations know: the end of the range was taken.
+    beyond : Beyond
+        Which of both readings and the target lie outside what the calibrations know.
     clamped : bool
         The law asked for more than the limit.
     """
@@ -67,14 +75,19 @@ class Command:
     reason: str
     target: float
     angle: float
-    outside: bool
+    beyond: Beyond
     clamped: bool
+
+    @property
+    def outside(self) -> bool:
+        """Is any of them outside?"""
+        return any(self.beyond)
 
 
 class _Rule(Protocol):
-    """A control law: readings (dU/U0) and the last command in, speed, target, angle and whether any was outside out."""
+    """A control law: readings (dU/U0) and the last command in, speed, target, angle and what was outside out."""
 
-    def step(self, time: float, human: float, robot: float, command: float) -> tuple[float, float, float, bool]: ...
+    def step(self, time: float, human: float, robot: float, command: float) -> tuple[float, float, float, Beyond]: ...
 
 
 class JointController:
@@ -129,7 +142,7 @@ class JointController:
                 branches_of(human, "human"), branches_of(robot, "robot"), gain, lag_s=lag_s, delay_s=delay_s, period_s=period_s
             )
         self._safe = 0.0
-        self._last = Command(0.0, "stop", "no frame yet", math.nan, math.nan, False, False)
+        self._last = Command(0.0, "stop", "no frame yet", math.nan, math.nan, Beyond(), False)
         self._good_at: float | None = None
 
     def step(self, time: float, human: Frame | None, robot: Frame | None) -> Command:
@@ -142,19 +155,19 @@ class JointController:
             (float(frame.values[each.column]) - each.calibration.u0) / each.calibration.u0
             for frame, each in ((human, self.human), (robot, self.robot))
         ]
-        wanted, target, angle, outside = self._rule.step(time, readings[0], readings[1], self._last.speed)
+        wanted, target, angle, beyond = self._rule.step(time, readings[0], readings[1], self._last.speed)
         if not math.isfinite(wanted):
             return self._without(time, "the law gave no number")
         speed = min(max(wanted, -self.limit), self.limit)
         self._safe, self._good_at = speed, time
-        self._last = Command(speed, "run", "", target, angle, outside, speed != wanted)
+        self._last = Command(speed, "run", "", target, angle, beyond, speed != wanted)
         return self._last
 
     def _without(self, time: float, reason: str) -> Command:
         held = self._good_at is not None and 0 <= time - self._good_at <= HOLD_S
         last = self._last
         self._last = Command(
-            self._safe if held else 0.0, "hold" if held else "stop", reason, last.target, last.angle, last.outside, last.clamped
+            self._safe if held else 0.0, "hold" if held else "stop", reason, last.target, last.angle, last.beyond, last.clamped
         )
         return self._last
 
@@ -168,6 +181,30 @@ def branches_of(of: Input, whose: str) -> BranchModel:
             "skinfab calibrate --model branches, or control with --controller p"
         )
     return model
+
+
+def require_two_sensors(human: Input, robot: Input, *, names: tuple[str, str], one_board: bool) -> None:
+    """Refuse one sensor for both: a robot that follows itself, by its own curve.
+
+    Parameters
+    ----------
+    human, robot : Input
+    names : (str, str)
+        Of both calibrations, for the message.
+    one_board : bool
+        Both are channels of one stream, so that their names tell them apart.
+
+    Raises
+    ------
+    InputError
+        Both are made from the same readings, or from one channel of one board.
+    """
+    one, other = human.calibration, robot.calibration
+    if one.signal == other.signal and (one_board or one.made_from == other.made_from):
+        same = f"{names[0]} and {names[1]} are both of the sensor {one.signal!r}"
+        if one.made_from == other.made_from:
+            same += ", made from the same log"
+        raise InputError(f"{same}; the human's sensor and the robot's are two: give each its own calibration")
 
 
 def _unfit(time: float, frame: Frame | None, of: Input, whose: str) -> str:
@@ -192,12 +229,12 @@ class _Published:
         self._human, self._robot = human.curve, robot.curve
         self._gain = gain / mean_slope(self._robot)
 
-    def step(self, time: float, human: float, robot: float, command: float) -> tuple[float, float, float, bool]:
+    def step(self, time: float, human: float, robot: float, command: float) -> tuple[float, float, float, Beyond]:
         target, far = self._human.angle(human)
         aim = min(max(float(target), self._robot.low), self._robot.high)
         angle, out = self._robot.angle(robot)
         speed = self._gain * (float(self._robot.signal(aim)) - robot)
-        return speed, aim, float(angle), bool(far) or bool(out) or aim != float(target)
+        return speed, aim, float(angle), Beyond(bool(far), aim != float(target), bool(out))
 
 
 class _Branches:
@@ -207,11 +244,11 @@ class _Branches:
         self._human, self._robot, self._gain = human.tracker(), robot.tracker(), gain
         self._low, self._high = robot.curve.low, robot.curve.high
 
-    def step(self, time: float, human: float, robot: float, command: float) -> tuple[float, float, float, bool]:
+    def step(self, time: float, human: float, robot: float, command: float) -> tuple[float, float, float, Beyond]:
         target, far = self._human.step(time, human)
         angle, out = self._robot.step(time, robot)
         aim = min(max(target, self._low), self._high)
-        return self._gain * (aim - angle), aim, angle, far or out or aim != target
+        return self._gain * (aim - angle), aim, angle, Beyond(bool(far), aim != target, bool(out))
 
 
 class _Full:
@@ -223,7 +260,7 @@ class _Full:
         self._observer = JointObserver(robot, lag_s=lag_s, delay_s=delay_s, period_s=period_s)
         self._curve = robot.curve
 
-    def step(self, time: float, human: float, robot: float, command: float) -> tuple[float, float, float, bool]:
+    def step(self, time: float, human: float, robot: float, command: float) -> tuple[float, float, float, Beyond]:
         shown, far = self._human.step(time, human)
         target, speed, acceleration = self._lead.step(shown)
         angle = self._observer.step(robot, command)
@@ -231,7 +268,7 @@ class _Full:
         # At an end of the range there is nothing to go on to.
         ahead = 0.0 if aim != target else speed + self._lag * acceleration
         _, out = self._curve.angle(robot)
-        return self._gain * (aim - angle) + ahead, aim, angle, far or bool(out) or aim != target
+        return self._gain * (aim - angle) + ahead, aim, angle, Beyond(bool(far), aim != target, bool(out))
 
 
 def mean_slope(curve: Curve) -> float:

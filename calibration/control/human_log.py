@@ -15,7 +15,7 @@ from skinfab.readout.table import Table
 FloatArray = NDArray[np.float64]
 
 
-def human_motion(table: Table, human: SensorCalibration) -> tuple[Motion, list[Frame], bool]:
+def human_motion(table: Table, human: SensorCalibration) -> tuple[Motion, list[Frame], bool, list[str]]:
     """The motion that a log shows, at the controller's rate.
 
     Parameters
@@ -31,20 +31,25 @@ def human_motion(table: Table, human: SensorCalibration) -> tuple[Motion, list[F
         Those that have come by each moment: a hole in the log gives the same frame again, which grows old.
     measured : bool
         Is the motion's angle the log's own? Else it is what the calibration makes of the readings.
+    notes : list of str
+        What was left out, a sentence each.
 
     Raises
     ------
     InputError
-        There is no such column, too short a log, or times do not grow.
+        There is no such column, or too short a log.
     """
     volts = table.column(human.signal)
-    good = np.isfinite(volts)
+    notes = [*table.notes]
+    # As `calibration.strain.prepare` does it: stamps in whole milliseconds are often doubled, and no fault of the readings.
+    forward = np.concatenate([[True], table.time[1:] > np.maximum.accumulate(table.time)[:-1]])
+    if count := int(np.count_nonzero(~forward)):
+        first = int(np.argmin(forward)) + 1
+        notes.append(f"{table.file}: {count} of {len(volts)} rows stand still or go back in time (row {first} first); they were left out")
+    good = forward & np.isfinite(volts)
     since = table.time[good]
     if len(since) < 2 or since[-1] - since[0] < 1.0:
         raise InputError(f"{table.file}: fewer than 1 s of readings of {human.signal!r}; there is nothing to follow")
-    if np.any(np.diff(since) <= 0):
-        row = int(np.argmax(np.diff(since) <= 0)) + 2
-        raise InputError(f"{table.file}: the time stands still or goes back at reading {row}; mend the log")
     measured = human.angle in table.columns and bool(np.isfinite(table.columns[human.angle][good]).all())
     angle = table.columns[human.angle][good] if measured else human.angles(since, volts[good])[0]
     time = np.arange(int((since[-1] - since[0]) * RATE_HZ + 1e-6) + 1) / RATE_HZ
@@ -54,4 +59,4 @@ def human_motion(table: Table, human: SensorCalibration) -> tuple[Motion, list[F
         Frame(t, t, k, np.array([u]), np.array([True]), np.array([False]))
         for k, (t, u) in enumerate(zip(since.tolist(), volts[good].tolist(), strict=True))
     ]
-    return Motion(table.file, time, np.interp(time, since, angle)), [seen[k] for k in last.tolist()], measured
+    return Motion(table.file, time, np.interp(time, since, angle)), [seen[k] for k in last.tolist()], measured, notes

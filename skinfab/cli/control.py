@@ -95,7 +95,7 @@ def _require_fitting_options(args: argparse.Namespace) -> None:
 
 def _inputs(args: argparse.Namespace) -> tuple[Input, Input]:
     """Both sensors; the simulator's own where none is given."""
-    from calibration.control.controller import Input
+    from calibration.control.controller import Input, require_two_sensors
     from calibration.finger.logs import calibrated
     from calibration.finger.simulated import HUMAN, ROBOT
     from calibration.strain.document import load_calibration
@@ -103,6 +103,8 @@ def _inputs(args: argparse.Namespace) -> tuple[Input, Input]:
     model = "poly" if args.controller == "p" else "branches"
     given = ((args.human, HUMAN), (args.robot, ROBOT))
     human, robot = (Input(calibrated(sensor, model) if path is None else load_calibration(path)) for path, sensor in given)
+    if args.human is not None and args.robot is not None:
+        require_two_sensors(human, robot, names=(str(args.human), str(args.robot)), one_board=args.port is not None)
     return human, robot
 
 
@@ -132,17 +134,15 @@ def _simulated(args: argparse.Namespace, human: Input, robot: Input, margin: Mar
     plant = Plant(lag_s=args.lag, delay_s=args.delay)
     if args.what == "simulator":
         return [follow(motion, controller(), seed=args.seed, plant=plant) for motion in (uniform(), random(args.seed))], []
-    motion, readings, measured = human_motion(read_table(args.what), human.calibration)
-    notes = (
-        []
-        if measured
-        else [f"{motion.name} has no column {human.calibration.angle!r}: the error is that to the angle read, not to a true one"]
-    )
+    motion, readings, measured, notes = human_motion(read_table(args.what), human.calibration)
+    if not measured:
+        notes.append(f"{motion.name} has no column {human.calibration.angle!r}: the error is that to the angle read, not to a true one")
     return [follow(motion, controller(), seed=args.seed, plant=plant, readings=readings)], notes
 
 
 def facts(args: argparse.Namespace, runs: Sequence[Run], margin: Margin, notes: Sequence[str]) -> dict[str, Any]:
     """The result, ready for JSON."""
+    from calibration.control.controller import Beyond
     from calibration.control.protocols import PAPER_DEG
 
     def share(of: list[bool]) -> float:
@@ -160,6 +160,8 @@ def facts(args: argparse.Namespace, runs: Sequence[Run], margin: Margin, notes: 
                 "paper_mean_error_deg": PAPER_DEG.get(run.motion.name),
                 "worst_error_deg": float(abs(run.robot - run.motion.angle).max()),
                 "outside": share([command.outside for command in run.commands]),
+                "outside_of": {name: share([getattr(command.beyond, name) for command in run.commands]) for name in Beyond._fields},
+                "motion_deg": [float(run.motion.angle.min()), float(run.motion.angle.max())],
                 "clamped": share([command.clamped for command in run.commands]),
                 "held_or_stopped": share([command.state != "run" for command in run.commands]),
             }
@@ -175,8 +177,8 @@ def _write(args: argparse.Namespace, runs: Sequence[Run], result: dict[str, Any]
 
     from calibration.control.figure import draw_runs
     from skinfab.files import atomic_write
+    from skinfab.staging import staged_folder
 
-    args.output.mkdir(parents=True, exist_ok=True)
     text = io.StringIO()
     text.write("# simulated: true\n")
     rows = csv.writer(text, lineterminator="\n")
@@ -187,10 +189,28 @@ def _write(args: argparse.Namespace, runs: Sequence[Run], result: dict[str, Any]
         for t, a, b, c in zip(each.motion.time.tolist(), each.motion.angle.tolist(), each.robot.tolist(), each.commands, strict=True):
             numbers = (f"{value:.6g}" for value in (t, a, b, c.target, c.angle, c.speed))
             rows.writerow([each.motion.name, *numbers, c.state, int(c.outside), int(c.clamped)])
-    atomic_write(args.output / "control.csv", text.getvalue())
-    atomic_write(args.output / "control.json", json.dumps(result, indent=1, allow_nan=False) + "\n")
     title = f"controller {args.controller}, gain {result['margin']['gain_per_s']:.3g} 1/s"
-    draw_runs(runs, args.output / "control.png", title=title)
+    with staged_folder(args.output) as folder:
+        atomic_write(folder / "control.csv", text.getvalue())
+        atomic_write(folder / "control.json", json.dumps(result, indent=1, allow_nan=False) + "\n")
+        draw_runs(runs, folder / "control.png", title=title)
+
+
+def _outside_of(run: dict[str, Any]) -> str:
+    """What was out of the calibrated range, and how far the motion went.
+
+    Examples
+    --------
+    >>> _outside_of({"outside": 0.25, "outside_of": {"human": 0.25, "target": 0.0, "robot": 0.125}, "motion_deg": [10.0, 85.0]})
+    " (the human's reading 25 %, the target 0 %, the robot's reading 12 %, in a motion from 10 to 85 degrees)"
+    """
+    if not run["outside"]:
+        return ""
+    of, (low, high) = run["outside_of"], run["motion_deg"]
+    return (
+        f" (the human's reading {100 * of['human']:.0f} %, the target {100 * of['target']:.0f} %, the robot's reading "
+        f"{100 * of['robot']:.0f} %, in a motion from {low:.0f} to {high:.0f} degrees)"
+    )
 
 
 def _lines(result: dict[str, Any]) -> list[str]:
@@ -200,7 +220,7 @@ def _lines(result: dict[str, Any]) -> list[str]:
         beside = "" if paper is None else f" (the paper's: {paper})"
         lines.append(
             f"{each['protocol']}: mean error {each['mean_error_deg']:.2f} degrees{beside}, worst {each['worst_error_deg']:.1f}; "
-            f"out of range {100 * each['outside']:.0f} % of the time, clamped {100 * each['clamped']:.0f} %, held or stopped "
-            f"{100 * each['held_or_stopped']:.0f} %"
+            f"out of range {100 * each['outside']:.0f} % of the time{_outside_of(each)}, clamped {100 * each['clamped']:.0f} %, "
+            f"held or stopped {100 * each['held_or_stopped']:.0f} %"
         )
     return lines

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import argparse
 import json
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
+from skinfab.cli import steps
 from skinfab.errors import InputError
 
 if TYPE_CHECKING:
@@ -21,6 +23,7 @@ def run_port(args: argparse.Namespace, human: Input, robot: Input, margin: Margi
     from calibration.control.controller import JointController
     from calibration.control.loop import run_loop
     from skinfab.cli.control import RATE_HZ
+    from skinfab.cli.record import outage_notes, outages
     from skinfab.readout.serial_port import SerialPort
 
     with SerialPort(args.port) as port:
@@ -28,15 +31,18 @@ def run_port(args: argparse.Namespace, human: Input, robot: Input, margin: Margi
         human, robot = (type(each)(each.calibration, stream.index(each.calibration.signal)) for each in (human, robot))
         period = 1 / (stream.rate_hz or RATE_HZ)
         options: dict[str, Any] = {"law": args.controller, "gain": margin.gain, "lag_s": args.lag, "delay_s": args.delay}
+        began = time.time()
         with _commands(args.commands) as send:
             loop = run_loop(port, JointController(human, robot, **options, period_s=period), send, seconds=args.seconds)
-        counts = port.counts
+        counts, gone = port.counts, outages(port, began, time.time())
     result = facts(args, loop, margin, simulated=stream.simulated)
+    result["outages"] = gone
     result["counts"] = {"lost": counts.lost, "bad": counts.bad, "late": counts.late, "reopened": counts.reopened}
     _write(args, loop, result)
     if args.json:
         print(json.dumps(result, allow_nan=False))
         return 0
+    steps.say(outage_notes(args.port, gone))
     taken = result["latency_ms"]
     print(
         f"{result['commands']} commands in {args.seconds:g} s: from frame to command {taken['median']:.2f} ms, worst {taken['worst']:.2f}; "
@@ -101,8 +107,8 @@ def _write(args: argparse.Namespace, loop: Loop, result: dict[str, Any]) -> None
 
     from calibration.control.loop_figure import draw_loop
     from skinfab.files import atomic_write
+    from skinfab.staging import staged_folder
 
-    args.output.mkdir(parents=True, exist_ok=True)
     text = io.StringIO()
     if result["simulated"]:
         text.write("# simulated: true\n")
@@ -114,6 +120,8 @@ def _write(args: argparse.Namespace, loop: Loop, result: dict[str, Any]) -> None
         numbers = ["" if math.isnan(value) else f"{value:.6g}" for value in (c.target, c.angle, c.speed)]
         taken = "" if math.isnan(late) else f"{1e3 * late:.4g}"
         rows.writerow([f"{t:.4f}", k, *numbers, c.state, c.reason, int(c.outside), int(c.clamped), taken])
-    atomic_write(args.output / "control.csv", text.getvalue())
-    atomic_write(args.output / "control.json", json.dumps(result, indent=1, allow_nan=False) + "\n")
-    draw_loop(loop, args.output / "control.png", title=f"controller {args.controller}" + (" (simulated)" if result["simulated"] else ""))
+    title = f"controller {args.controller}" + (" (simulated)" if result["simulated"] else "")
+    with staged_folder(args.output) as folder:
+        atomic_write(folder / "control.csv", text.getvalue())
+        atomic_write(folder / "control.json", json.dumps(result, indent=1, allow_nan=False) + "\n")
+        draw_loop(loop, folder / "control.png", title=title)

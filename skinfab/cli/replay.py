@@ -146,8 +146,8 @@ def _write(output: Path, columns: dict[str, list[float]], result: dict[str, Any]
     from calibration.strain.live import drawn
     from calibration.strain.time_figure import draw_over_time
     from skinfab.files import atomic_write
+    from skinfab.staging import staged_folder
 
-    output.mkdir(parents=True, exist_ok=True)
     text = io.StringIO()
     simulated = log.recording.stream.simulated
     if simulated:
@@ -156,10 +156,11 @@ def _write(output: Path, columns: dict[str, list[float]], result: dict[str, Any]
     rows.writerow(columns)
     for row in zip(*columns.values(), strict=True):
         rows.writerow(["" if math.isnan(value) else f"{value:.12g}" for value in row])
-    atomic_write(output / "replay.csv", text.getvalue())
     time, curves, quantity, flagged = drawn(columns, log.recording, calibration)
-    draw_over_time(time, curves, output / "replay.png", title=f"{log.file}", quantity=quantity, simulated=simulated, flagged=flagged)
-    atomic_write(output / "result.json", json.dumps(result, indent=1, allow_nan=False) + "\n")
+    with staged_folder(output) as folder:
+        atomic_write(folder / "replay.csv", text.getvalue())
+        draw_over_time(time, curves, folder / "replay.png", title=f"{log.file}", quantity=quantity, simulated=simulated, flagged=flagged)
+        atomic_write(folder / "result.json", json.dumps(result, indent=1, allow_nan=False) + "\n")
 
 
 def _lines(result: dict[str, Any]) -> list[str]:

@@ -120,6 +120,50 @@ def test_port(calibrations: dict[str, str], tmp_path: Path, capsys: pytest.Captu
     assert abs(board.robot[120] - uniform().angle[120]) < 10
 
 
+def test_what_was_out_of_range_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The protocols go to 85 degrees, 5 beyond the calibrations, and slack holds a reading at the end after the joint has turned."""
+    assert main(["control", "simulator", "-o", str(tmp_path / "o")]) == 0
+    uniform_run, _ = json.loads((tmp_path / "o/control.json").read_text())["runs"]
+    of = uniform_run["outside_of"]
+    assert max(of.values()) <= uniform_run["outside"] <= sum(of.values()) and of["human"] > 0.1 and of["robot"] > 0.2
+    assert uniform_run["motion_deg"] == [10.0, 85.0]
+    assert f"the robot's reading {100 * of['robot']:.0f} %, in a motion from 10 to 85 degrees)" in capsys.readouterr().out
+
+
+def test_times_in_whole_milliseconds_are_left_out_where_they_are_doubled(
+    calibrations: dict[str, str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    lines = (ROOT / "calibration/logs/human_finger.csv").read_text().splitlines()[:1500]
+    doubled = [*lines[:500], lines[499], *lines[500:900], *lines[800:810], *lines[900:]]
+    (tmp_path / "ms.csv").write_text("\n".join(doubled))
+    words = ["--human", calibrations["human_branches"], "-o", str(tmp_path / "o"), "--json"]
+    assert main(["control", str(tmp_path / "ms.csv"), *words]) == 0
+    result = json.loads(capsys.readouterr().out)
+    head = 1 + next(k for k, line in enumerate(lines) if not line.startswith("#"))
+    assert result["notes"] == [
+        f"ms.csv: 11 of {len(doubled) - head} rows stand still or go back in time (row {500 - head + 1} first); they were left out"
+    ]
+    (tmp_path / "plain.csv").write_text("\n".join(lines))
+    assert main(["control", str(tmp_path / "plain.csv"), *words]) == 0
+    assert json.loads(capsys.readouterr().out)["runs"][0]["mean_error_deg"] == result["runs"][0]["mean_error_deg"]
+
+
+def test_an_interrupted_run_leaves_the_one_before_as_it_was(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = ["control", "simulator", "-o", str(tmp_path / "o"), "--seed"]
+    assert main([*words, "1"]) == 0
+    before = {path.name: path.read_bytes() for path in (tmp_path / "o").iterdir()}
+
+    def interrupted(*args: object, **options: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("calibration.control.figure.draw_runs", interrupted)
+    assert main([*words, "2"]) == 130
+    assert {path.name: path.read_bytes() for path in (tmp_path / "o").iterdir()} == before
+    assert "nothing half-written was left" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize(
     ("words", "status", "says"),
     [
@@ -142,6 +186,8 @@ def test_wrong_usage(words: list[str], status: int, says: str, tmp_path: Path, c
     ("more", "says"),
     [
         (["--human", "human_poly", "--robot", "robot_branches"], "model poly"),
+        (["--human", "human_branches", "--robot", "human_branches"], "made from the same log; the human's sensor and the robot's are two"),
+        (["--human", "human_poly", "--robot", "human_branches", "--controller", "p", "--port", "x"], "both of the sensor 'human_V'"),
         (["--human", "human_branches", "--robot", "robot_branches", "--port", "/dev/no-such-port"], "/dev/no-such-port"),
     ],
 )

@@ -54,6 +54,7 @@ def test_beyond_the_range_the_end_is_the_target_and_it_is_said(law: Law) -> None
     for k in range(100):
         command = one.step(k / 100, frame(k / 100, 95), frame(k / 100, 70))
     assert command.target == pytest.approx(80, abs=1e-6) and command.outside and math.isfinite(command.speed)
+    assert command.beyond.human and not command.beyond.robot
     assert not controller(law).step(0.0, frame(0, 45), frame(0, 45)).outside
 
 
