@@ -1,0 +1,202 @@
+"""Everything the window can be told to do, in one table: menus, tool bar, keys and their list are made from it."""
+
+from __future__ import annotations
+
+import tkinter as tk
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from tkinter import ttk
+
+#: Words of a key as Tk writes them, and as people read them.
+_KEY_WORDS = (("Control-", "Ctrl+"), ("Shift-", "Shift+"), ("Alt-", "Alt+"), ("Key-", ""), ("Return", "Enter"))
+
+
+def always() -> bool:
+    """Can be done at any time."""
+    return True
+
+
+@dataclass(frozen=True)
+class Action:
+    """One thing the user can do.
+
+    Parameters
+    ----------
+    id : str
+        Unique, a Tk name too: "save".
+    label : str
+        What menus and buttons say.
+    menu : str
+        The menu it is in: "File", "Edit", ...; "" for none.
+    run : callable
+    key : str
+        As Tk writes it, without brackets: "Control-s"; "" for none.
+    enabled : callable
+        Whether it can be done now.
+    tip : str
+        One sentence, shown over its button and in the status bar.
+    tool : bool
+        Has a button in the tool bar.
+    checked : callable, optional
+        For one that is on or off: whether it is on.
+    """
+
+    id: str
+    label: str
+    menu: str
+    run: Callable[[], object]
+    key: str = ""
+    enabled: Callable[[], bool] = always
+    tip: str = ""
+    tool: bool = False
+    checked: Callable[[], bool] | None = None
+
+
+def key_words(key: str) -> str:
+    """A key as people read it.
+
+    Examples
+    --------
+    >>> key_words("Control-Shift-s"), key_words("Key-1"), key_words("F1")
+    ('Ctrl+Shift+S', '1', 'F1')
+    """
+    for written, read in _KEY_WORDS:
+        key = key.replace(written, read)
+    head, plus, last = key.rpartition("+")
+    return head + plus + (last.upper() if len(last) == 1 else last)
+
+
+class Actions:
+    """The table, and what is made from it.
+
+    Parameters
+    ----------
+    root : Tk
+        Its keys are bound here.
+    actions : sequence of Action
+        In the order of the menus.
+
+    Raises
+    ------
+    ValueError
+        Two have the same id or key.
+    """
+
+    def __init__(self, root: tk.Tk, actions: Sequence[Action]) -> None:
+        self.all = tuple(actions)
+        for what, words in (("id", [a.id for a in self.all]), ("key", [a.key for a in self.all if a.key])):
+            twice = {word for word in words if words.count(word) > 1}
+            if twice:
+                raise ValueError(f"{what} {', '.join(sorted(twice))} is used by two actions")
+        self._root = root
+        self._buttons: list[tuple[Action, ttk.Button | ttk.Checkbutton, tk.BooleanVar | None]] = []
+        self._checks: dict[str, tk.BooleanVar] = {}
+        self._menus: list[tuple[tk.Menu, list[tuple[int, Action]]]] = []
+        for action in self.all:
+            if action.key:
+                root.bind(f"<{action.key}>", self._on_key(action))
+                if action.key.startswith("Control-") and action.key[-2] == "-":  # with Caps Lock Tk calls the key by its capital
+                    root.bind(f"<{action.key[:-1]}{action.key[-1].upper()}>", self._on_key(action))
+
+    def __getitem__(self, id: str) -> Action:
+        return next(a for a in self.all if a.id == id)
+
+    def do(self, id: str) -> bool:
+        """Do it if it can be done now; whether it was."""
+        action = self[id]
+        if not action.enabled():
+            return False
+        action.run()
+        return True
+
+    def menu_bar(self, submenus: dict[str, Callable[[tk.Menu], None]]) -> tk.Menu:
+        """A menu bar; `submenus` ("File/Open recent") are filled by their callables whenever they are opened."""
+        bar = tk.Menu(self._root, tearoff=False, name="menu")
+        for name in dict.fromkeys(a.menu for a in self.all if a.menu):
+            menu = tk.Menu(bar, tearoff=False, name=name.lower())
+            entries = []
+            for action in (a for a in self.all if a.menu == name):
+                accelerator = key_words(action.key)
+                if action.checked is None:
+                    menu.add_command(label=action.label, accelerator=accelerator, command=action.run)
+                else:
+                    var = self._checks.setdefault(action.id, tk.BooleanVar(self._root))
+                    menu.add_checkbutton(label=action.label, accelerator=accelerator, command=action.run, variable=var)
+                entries.append((menu.index("end") or 0, action))
+                self._insert_submenu(menu, f"{name}/{action.id}", submenus)
+            menu.configure(postcommand=self.refresh)
+            bar.add_cascade(label=name, menu=menu, underline=0)
+            self._menus.append((menu, entries))
+        return bar
+
+    def tool_bar(self, master: tk.Misc, show_tip: Callable[[str], None]) -> ttk.Frame:
+        """A slim row of buttons; `show_tip` is called with a sentence, or "" when the pointer leaves."""
+        bar = ttk.Frame(master, name="toolbar", padding=(6, 3))
+        before = ""
+        for action in (a for a in self.all if a.tool):
+            if before and action.menu != before:
+                ttk.Separator(bar, orient="vertical").pack(side="left", fill="y", padx=5, pady=3)
+            before = action.menu
+            button: ttk.Button | ttk.Checkbutton
+            var = None
+            text = action.label.removesuffix(" …")
+            if action.checked is None:
+                button = ttk.Button(bar, text=text, command=action.run, style="Tool.TButton", name=action.id, takefocus=True)
+            else:
+                var = self._checks.setdefault(action.id, tk.BooleanVar(self._root))
+                button = ttk.Checkbutton(bar, text=text, command=action.run, style="Tool.Toolbutton", variable=var, name=action.id)
+            key = f" ({key_words(action.key)})" if action.key else ""
+            _bind_tip(button, f"{action.tip or action.label}{key}", show_tip)
+            button.pack(side="left", padx=1)
+            self._buttons.append((action, button, var))
+        return bar
+
+    def refresh(self) -> None:
+        """Grey out what cannot be done now, and tick what is on."""
+        for action in self.all:
+            if action.checked is not None and action.id in self._checks:
+                self._checks[action.id].set(action.checked())
+        for action, button, _ in self._buttons:
+            button.state(["!disabled" if action.enabled() else "disabled"])
+        for menu, entries in self._menus:
+            for index, action in entries:
+                menu.entryconfigure(index, state="normal" if action.enabled() else "disabled")
+
+    def keys(self) -> Iterable[tuple[str, str]]:
+        """Every key and what it does, for the help."""
+        return ((key_words(a.key), a.label.removesuffix(" …")) for a in self.all if a.key)
+
+    def _insert_submenu(self, menu: tk.Menu, place: str, submenus: dict[str, Callable[[tk.Menu], None]]) -> None:
+        """A submenu named "Open recent" stands behind the action whose place it gives: "File/open/Open recent"."""
+        for name, fill in submenus.items():
+            where, _, label = name.rpartition("/")
+            if where != place:
+                continue
+            below = tk.Menu(menu, tearoff=False)
+            below.configure(postcommand=_refill(below, fill))
+            menu.add_cascade(label=label, menu=below)
+
+    def _on_key(self, action: Action) -> Callable[[tk.Event], str | None]:
+        def pressed(event: tk.Event) -> str | None:
+            # A letter typed into a field is meant for the field.
+            if isinstance(event.widget, (tk.Entry, ttk.Entry, tk.Text)) and not action.key.startswith(("Control-", "F", "Alt-")):
+                return None
+            if not action.enabled():
+                return None
+            action.run()
+            return "break"
+
+        return pressed
+
+
+def _bind_tip(widget: tk.Misc, text: str, show: Callable[[str], None]) -> None:
+    widget.bind("<Enter>", lambda event: show(text))
+    widget.bind("<Leave>", lambda event: show(""))
+
+
+def _refill(menu: tk.Menu, fill: Callable[[tk.Menu], None]) -> Callable[[], None]:
+    def refill() -> None:
+        menu.delete(0, "end")
+        fill(menu)
+
+    return refill
