@@ -45,7 +45,7 @@ def save_skin(skin: Skin, path: str | Path) -> None:
     InputError
         The file cannot be written.
     """
-    arrays = {"mesh/V": skin.mesh.V, "mesh/F": skin.mesh.F, "seams": np.asarray(skin.seams).reshape(-1, 2)}
+    arrays: dict[str, NDArray[Any]] = {"mesh/V": skin.mesh.V, "mesh/F": skin.mesh.F, "seams": np.asarray(skin.seams).reshape(-1, 2)}
     if skin.object_V is not None:
         arrays["object/V"] = skin.object_V
     for k, piece in enumerate(skin.pieces):
