@@ -68,6 +68,7 @@ def run(args: argparse.Namespace) -> int:
     if not simulated and (args.channels or args.rate):
         args.wrong_usage("--channels and --rate are of the simulator; a port says itself what it sends")
     from skinfab.readout.record import Recorder, record, require_new
+    from skinfab.readout.serial_port import SerialPort
 
     require_new(args.output)
     with _source(args) as source, Recorder(args.output, source.stream) as recorder:
@@ -75,7 +76,10 @@ def run(args: argparse.Namespace) -> int:
         with _shown(quiet=args.json, source=source) as show, _ended_by_signals() as stop:
             record(source, recorder, seconds=args.seconds, told=show, stop=stop)
         counts, gone = asdict(source.counts), outages(source, began, time.time())
+        fault = source.fault if isinstance(source, SerialPort) else ""
     notes = _notes(counts, args.output, recorder.bytes) if recorder.frames else ["no frame came; no file was left"]
+    if counts["bad"] and fault:
+        notes.append(f"the last that was none: {fault}")
     result: dict[str, Any] = {
         "file": str(args.output),
         "stream": source.stream.name,

@@ -1,14 +1,16 @@
-"""Lines of numbers parted by commas, as a small board prints them: read, and flagged, for nothing tells a wrong digit from a right one.
+"""Lines of numbers, as a small board prints them: read, and flagged, for nothing tells a wrong digit from a right one.
 
-A line of headings, sent every second, names the channels; of these ``sequence`` and ``time_us``, ``time_ms`` or ``time_s``
-are the device's count and clock. Without headings the channels are called ch1, ch2, ..., lines are counted as they come,
-and the host's clock is the only one.
+Numbers are parted by commas; by semicolons or tabs a decimal comma is understood too. A line of headings, sent every second,
+names the channels; of these ``sequence`` and ``time_us``, ``time_ms`` or ``time_s`` are the device's count and clock. Without
+headings the channels are called ch1, ch2, ..., lines are counted as they come, and the host's clock is the only one: lines
+that came in one go are taken to be evenly spread over the time since those before.
 """
 
 from __future__ import annotations
 
 import math
 import re
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -22,10 +24,24 @@ LONGEST_LINE = 16_384
 ALIKE, HEADINGS_S = 3, 1.5
 
 #: Digits, not all that Python takes for a number: 1_0 is two numbers whose comma was hurt.
-_NUMBER = re.compile(rb"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
+_NUMBER = re.compile(rb"[+-]?(\d+[.,]?\d*|[.,]\d+)([eE][+-]?\d+)?")
+#: What parts the cells of a line: the first of these that is in it.
+_MARKS = (b";", b"\t", b",")
+#: So much of a line that was not understood is shown.
+_SHOWN = 60
 _NOTHING = (b"", b"nan", b"NaN", b"NAN")
 _TIMES = {"time_us": 1e6, "time_ms": 1e3, "time_s": 1.0}
 _SEQUENCE = "sequence"
+
+
+@dataclass(frozen=True)
+class _Line:
+    """Numbers, when they were read (s since 1970), when they came as far as that is known, and what parted them."""
+
+    numbers: list[float]
+    host_time: float
+    came: float
+    mark: bytes
 
 
 class LineDecoder:
@@ -48,11 +64,15 @@ class LineDecoder:
         self._splitter = Splitter(end=b"\n", longest=LONGEST_LINE)
         self._first = True
         self._names: tuple[str, ...] = ()
-        self._waiting: list[list[float]] = []
+        self._mark = b""
+        self._waiting: list[_Line] = []
+        self._before: float | None = None
         self._since: float | None = None
         self._lines = 0
         self._start: float | None = None
         self._wrong = 0
+        #: What was not understood of the last line that was no frame, a sentence; empty where there was none.
+        self.fault = ""
         #: What is sent; None until that is known.
         self.stream: Stream | None = None
 
@@ -64,40 +84,53 @@ class LineDecoder:
     def reset(self) -> None:
         """The port was gone: the line that had begun will not be ended."""
         self._splitter.reset()
-        self._first = True
+        self._first, self._before = True, None
 
     def feed(self, data: bytes, *, host_time: float) -> list[Frame]:
         """The frames that these bytes complete."""
         out = []
-        for line in self._splitter.feed(data):
+        lines = self._splitter.feed(data)
+        for k, line in enumerate(lines):
             # What comes first is the end of a line that had begun: cut off in the middle of a number, it would not show.
             # Headings that begin with one of our own words are whole.
-            if self._first and not data.startswith(b"\n") and line.split(b",")[0].decode("latin-1") not in (_SEQUENCE, *_TIMES):
+            if self._first and not data.startswith(b"\n") and re.split(rb"[;\t,]", line)[0].decode("latin-1") not in (_SEQUENCE, *_TIMES):
                 self._first = False
                 continue
             self._first = False
-            out += self._line(line.strip(b"\r \t"), host_time)
+            if self._before is not None:
+                came = self._before + (host_time - self._before) * (k + 1) / len(lines)
+            else:  # of what waited in the port, only the last line's time is known
+                came = host_time if k == len(lines) - 1 else math.nan
+            out += self._line(line.strip(b"\r \t"), host_time, came)
         if b"\n" in data:
-            self._first = False
+            self._first, self._before = False, host_time
         return out
 
-    def _line(self, line: bytes, host_time: float) -> list[Frame]:
+    def _line(self, line: bytes, host_time: float, came: float) -> list[Frame]:
         if not line or line.startswith(b"#"):
             return []
-        cells = [cell.strip() for cell in line.split(b",")]
+        mark = self._mark or next((mark for mark in _MARKS if mark in line), b",")
+        cells = [cell.strip() for cell in line.split(mark)]
         numbers = _numbers(cells)
         if numbers is None:
-            if not self._headings(cells):
-                self._wrong += 1
+            if not self._headings(cells, mark):
+                self._not_understood(line, "is no line of numbers parted by commas, semicolons or tabs, and none of headings")
             return []
         if self.stream is None:
-            return self._guess(numbers, host_time)
+            return self._guess(_Line(numbers, host_time, came, mark))
         if len(numbers) != len(self._names):
-            self._wrong += 1
+            decimal = "; are these decimal commas? Print points, or part the numbers by semicolons" if mark == b"," else ""
+            self._not_understood(line, f"has {len(numbers)} numbers where {len(self._names)} are named{decimal}")
             return []
-        return self._frames([numbers], host_time)
+        return self._frames([_Line(numbers, host_time, came, mark)])
 
-    def _headings(self, cells: list[bytes]) -> bool:
+    def _not_understood(self, line: bytes, why: str) -> None:
+        self._wrong += 1
+        shown = line[:_SHOWN].decode("latin-1")
+        if shown.isprintable():  # else it is noise, or was never meant for people
+            self.fault = f"the line {shown!r} {why}"
+
+    def _headings(self, cells: list[bytes], mark: bytes) -> bool:
         """Is this the line of headings? Taken over where there was none before."""
         try:
             names = tuple(cell.decode("ascii") for cell in cells)
@@ -107,9 +140,9 @@ class LineDecoder:
             return names == self._names
         if not all(re.fullmatch(r"[A-Za-z][\w .()/%-]*", name) for name in names) or sum(name in _TIMES for name in names) > 1:
             return False
-        return self._take(names)
+        return self._take(names, mark)
 
-    def _take(self, names: tuple[str, ...]) -> bool:
+    def _take(self, names: tuple[str, ...], mark: bytes) -> bool:
         channels = [name for name in names if name != _SEQUENCE and name not in _TIMES]
         try:
             stream = Stream("serial lines", tuple(Channel(name) for name in channels))
@@ -117,31 +150,34 @@ class LineDecoder:
             return False
         if not channels or names.count(_SEQUENCE) > 1:
             return False
-        self._names, self.stream = names, stream
+        self._names, self.stream, self._mark = names, stream, mark
         return True
 
-    def _guess(self, numbers: list[float], host_time: float) -> list[Frame]:
-        if self._waiting and len(self._waiting[-1]) != len(numbers):
+    def _guess(self, line: _Line) -> list[Frame]:
+        if self._waiting and (len(self._waiting[-1].numbers), self._waiting[-1].mark) != (len(line.numbers), line.mark):
             self._waiting.clear()
             self._since = None
-        self._since = host_time if self._since is None else self._since
-        self._waiting = [*self._waiting, numbers][-ALIKE:]
-        if len(self._waiting) < ALIKE or host_time - self._since < HEADINGS_S:
+        self._since = line.host_time if self._since is None else self._since
+        self._waiting = [*self._waiting, line][-ALIKE:]
+        if len(self._waiting) < ALIKE or line.host_time - self._since < HEADINGS_S:
             return []
-        self._take(tuple(f"ch{k + 1}" for k in range(len(numbers))))
+        self._take(tuple(f"ch{k + 1}" for k in range(len(line.numbers))), line.mark)
         lines, self._waiting = self._waiting, []
-        return self._frames(lines, host_time)
+        return self._frames(lines)
 
-    def _frames(self, lines: list[list[float]], host_time: float) -> list[Frame]:
+    def _frames(self, lines: list[_Line]) -> list[Frame]:
         stream = self.stream
         assert stream is not None
+        clocked = any(name in _TIMES for name in self._names)
         out = []
-        for numbers in lines:
+        for line in lines:
+            if not clocked and math.isnan(line.came):
+                continue
             if self._start is None:
-                self._start = host_time
-            sequence, device_time = self._lines, host_time - self._start
+                self._start = line.came
+            sequence, device_time = self._lines, line.came - self._start
             values = []
-            for name, number in zip(self._names, numbers, strict=True):
+            for name, number in zip(self._names, line.numbers, strict=True):
                 if name == _SEQUENCE:
                     sequence = int(number) if 0 <= number < 2**53 else -1
                 elif name in _TIMES:
@@ -150,10 +186,11 @@ class LineDecoder:
                     values.append(number)
             if sequence < 0 or not math.isfinite(device_time):
                 self._wrong += 1
+                self.fault = "a line has no number where its headings name the device's count or clock"
                 continue
             self._lines += 1
             array = np.array(values)
-            out.append(Frame(device_time, host_time, sequence, array, np.isfinite(array), stream.saturated(array)))
+            out.append(Frame(device_time, line.host_time, sequence, array, np.isfinite(array), stream.saturated(array)))
         return out
 
 
@@ -164,7 +201,7 @@ def _numbers(cells: list[bytes]) -> list[float] | None:
         if cell in _NOTHING:
             out.append(math.nan)
         elif _NUMBER.fullmatch(cell):
-            out.append(float(cell))
+            out.append(float(cell.replace(b",", b".")))
         else:
             return None
     return out if any(cell not in _NOTHING for cell in cells) else None

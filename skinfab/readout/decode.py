@@ -34,6 +34,11 @@ class Decoder(Protocol):
         """Pieces that were no packet."""
         ...
 
+    @property
+    def fault(self) -> str:
+        """Why the last bad piece was none, a sentence; empty where that cannot be said."""
+        ...
+
     def reset(self) -> None:
         """The port was gone: what had begun will not be ended."""
         ...
@@ -58,6 +63,8 @@ class PacketDecoder:
     """
 
     checked = True
+    #: Of a packet that is hurt nothing more can be said.
+    fault = ""
 
     def __init__(self) -> None:
         self._splitter = Splitter()
@@ -130,6 +137,10 @@ class AnyDecoder:
     @property
     def bad(self) -> int:
         return self._each[0].bad
+
+    @property
+    def fault(self) -> str:
+        return next((decoder.fault for decoder in self._each if decoder.fault), "")
 
     def reset(self) -> None:
         for decoder in self._each:

@@ -116,6 +116,11 @@ class SerialPort:
         with self._news:
             return tuple(self._outages)
 
+    @property
+    def fault(self) -> str:
+        """Why the last line that was no frame was none, a sentence; empty where there was none, or packets come."""
+        return self._decoder.fault
+
     def open(self) -> Self:
         """Open the port and wait until it has said what its channels are.
 
@@ -137,11 +142,11 @@ class SerialPort:
         with self._news:
             known = self._news.wait_for(lambda: self._decoder.stream is not None or self._fault is not None, self._described_s)
         if not known or self._fault is not None:
-            fault_, received = self._fault, self._bytes
+            fault_, received, seen = self._fault, self._bytes, self.fault
             self.close()
             if fault_ is not None:
                 raise fault_
-            raise InputError(_nothing_understood(self.port, received, self._described_s, self.baud))
+            raise InputError(_nothing_understood(self.port, received, self._described_s, self.baud, seen))
         return self
 
     def close(self) -> None:
@@ -291,10 +296,10 @@ def _why_not(port: str, fault: BaseException) -> str:
     return f"{port} is no serial port that can be opened ({fault}); give one such as /dev/ttyACM0"
 
 
-def _nothing_understood(port: str, received: int, waited_s: float, baud: int) -> str:
+def _nothing_understood(port: str, received: int, waited_s: float, baud: int, seen: str) -> str:
     if not received:
         return f"{port} has sent nothing for {waited_s:g} s; look at the device, its supply and its cable"
     return (
-        f"{port} has sent {received} bytes in {waited_s:g} s and no description of a stream; is it {baud} baud, and does the firmware "
-        "send what docs/readout.md asks for?"
+        f"{port} has sent {received} bytes in {waited_s:g} s and no description of a stream{f' ({seen})' if seen else ''}; is it {baud} "
+        "baud, and does the firmware send what docs/readout.md asks for?"
     )

@@ -30,6 +30,8 @@ TABLE_MAX_BYTES = 1_000_000_000
 _TIME_NAMES = ("time", "t", "timestamp", "device_time", "host_time", "seconds", "zeit")
 _TIME_UNITS = {"": 1.0, "s": 1.0, "sec": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
 
+#: 1,5 for 1.5; but 1,234 may be one thousand and more.
+_DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+([eE][+-]?\d+)?")
 #: What stands for nothing in a cell.
 _EMPTY = {"", "nan", "na", "n/a", "null", "none", "-"}
 
@@ -85,7 +87,7 @@ class Table:
 def read_table(path: str | Path) -> Table:
     """Read a log.
 
-    Cells are parted by commas, semicolons (then a decimal comma is understood) or tabs. Times are numbers in the unit
+    Cells are parted by commas, or by semicolons or tabs (then a decimal comma is understood). Times are numbers in the unit
     that the heading names (``time_ms``, ``Time (s)``; seconds where it names none) or dates in ISO 8601.
 
     Raises
@@ -97,7 +99,7 @@ def read_table(path: str | Path) -> Table:
     lines, delimiter = read_csv_lines(path, max_bytes=TABLE_MAX_BYTES, wanted="a log as a CSV file")
     remarks, head, rows, first, notes = _parts(lines, delimiter, path)
     at = _time_column(head, path)
-    comma = delimiter == ";"
+    comma = delimiter != ","
     columns = {
         name: _numbers(rows, k, comma=comma, where=f"{path}, column {name!r}", first=first) for k, name in enumerate(head) if k != at
     }
@@ -132,7 +134,10 @@ def _parts(lines: Sequence[str], delimiter: str, path: Path) -> tuple[dict[str, 
                 body.pop()
                 notes = (f"{path.name}: the last line is cut off and was left out",)
                 break
-            raise InputError(f"{path}, line {number}: {len(row)} cells under {len(head)} headings; mend the line")
+            what = "mend the line"
+            if delimiter == "," and len(row) > len(head) and all(cell.strip().lstrip("+-").isdigit() for cell in row):
+                what = "if these are decimal commas, save the log with points, or with semicolons between its columns"
+            raise InputError(f"{path}, line {number}: {len(row)} cells under {len(head)} headings; {what}")
     if not body:
         raise InputError(f"{path} has headings and no rows; record something first")
     return remarks, head, body, start + 2, notes
@@ -185,6 +190,11 @@ def _numbers(rows: Sequence[Sequence[str]], k: int, *, comma: bool, where: str, 
         try:
             out[i] = float(text.replace(",", ".") if comma else text)
         except ValueError:
+            if not comma and _DECIMAL_COMMA.fullmatch(text):
+                raise InputError(
+                    f"{where}, row {i + 1} (line {first + i} or so): {text!r} has a decimal comma, and commas part the columns; "
+                    "save the log with points in its numbers, or with semicolons between its columns"
+                ) from None
             if i < 1 or not np.isfinite(out[:i]).any():
                 return np.full(len(cells), np.nan)  # a column of words: nothing to reckon with
             raise InputError(f"{where}, row {i + 1} (line {first + i} or so): {cell!r} is no number; mend it or leave it empty") from None

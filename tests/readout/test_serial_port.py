@@ -2,6 +2,9 @@
 
 import errno
 import itertools
+import os
+import pty
+import threading
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -243,8 +246,29 @@ def test_a_fault_in_the_reading_thread_reaches_who_reads(monkeypatch: pytest.Mon
             port.read_latest(1.0)
 
 
+def test_a_board_that_prints_for_people_is_told_what_was_seen() -> None:
+    ours, theirs = pty.openpty()
+    stop = threading.Event()
+
+    def talk() -> None:
+        while not stop.wait(0.02):
+            os.write(ours, b"S1 = 1.5 V\n")
+
+    thread = threading.Thread(target=talk)
+    thread.start()
+    try:
+        says = r"\(the line 'S1 = 1.5 V' is no line of numbers parted by commas, semicolons or tabs, and none of headings\); is it"
+        with pytest.raises(InputError, match=says):
+            SerialPort(os.ttyname(theirs), described_s=0.5).open()
+    finally:
+        stop.set()
+        thread.join()
+        os.close(ours)
+        os.close(theirs)
+
+
 def test_what_cannot_be_understood_is_one_line() -> None:
-    says = r"bytes in 0\.5 s and no description of a stream; is it 115200 baud"
+    says = r"bytes in 0\.5 s and no description of a stream.*; is it 115200 baud"
     with PtyServer(STREAM, strain_frames(STREAM), faults=Faults(flipped=0.3)) as device, pytest.raises(InputError, match=says):
         SerialPort(device.path, baud=115_200, described_s=0.5).open()
 

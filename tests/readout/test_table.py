@@ -22,6 +22,7 @@ def written(tmp_path: Path, text: str, *, encoding: str = "utf-8") -> Path:
         ("Time (ms),U\n1500,2\n1600,nan\n1700,4\n", [0, 0.1, 0.2]),
         ("U\ttime_us\n2\t0\nNA\t100000\n4\t200000\n", [0, 0.1, 0.2]),
         ("Zeit;U\n0,0;2,0\n0,1;\n0,2;4,0\n", [0, 0.1, 0.2]),
+        ("Zeit\tU\n0,0\t2,0\n0,1\t\n0,2\t4,0\n", [0, 0.1, 0.2]),
         ("Time,U\n2026-01-31 12:00:00.000+00:00,2\n2026-01-31 12:00:00.100+00:00,\n2026-01-31 12:00:00.200+00:00,4\n", [0, 0.1, 0.2]),
         ("# made by: hand\n\ntime,U\n\n0,2\n0.1,-\n0.2,4\n", [0, 0.1, 0.2]),
     ],
@@ -64,6 +65,9 @@ def test_a_column_of_words_is_no_fault_until_it_is_asked_for(tmp_path: Path) -> 
         ("time,U\nnoon,1\n", "'noon' is no time"),
         ("time,U\n2026-01-31 12:00:00,1\n2026-01-31 12:00:01+00:00,1\n", "let all or none do so"),
         ('time,U\n0,"1\n', "is not a CSV file"),
+        ('time,U\n0,"1,5"\n1,"2,5"\n', r"column 'U', row 1 \(line 2 or so\): '1,5' has a decimal comma, and commas part the columns"),
+        ('time,U\n"0,0",1\n"0,1",2\n', r"column 'time', row 1 .*'0,0' has a decimal comma"),
+        ("time,U\n0,0,1,5\n0,1,2,5\n", r"line 2: 4 cells under 2 headings; if these are decimal commas"),
     ],
 )
 def test_what_cannot_be_read(text: str, says: str, tmp_path: Path) -> None:

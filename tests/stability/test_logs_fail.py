@@ -119,7 +119,7 @@ def test_what_is_no_log(tmp_path: Path, head: bytes, tail: bytes) -> None:
 
 
 def test_what_is_no_file(tmp_path: Path) -> None:
-    for path, says in ((tmp_path / "none", "No such file"), (tmp_path, "without a .mcap or .db3"), (Path("/dev/zero"), "device or a pipe")):
+    for path, says in ((tmp_path / "none", "No such file"), (tmp_path, "no .mcap or .db3 file"), (Path("/dev/zero"), "device or a pipe")):
         with pytest.raises(InputError, match=says):
             read_log(path)
 

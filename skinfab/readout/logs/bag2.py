@@ -36,6 +36,8 @@ SQLITE = b"SQLite format 3\0"
 #: No message of a log is longer; a column that is computed could be.
 _MAX_MESSAGE = 10_000_000
 _MAX_METADATA = 10_000_000
+#: What else a folder may hold that is a log by itself.
+_LOGS = (".csv", ".bag", ".frames")
 
 
 def write_bag2(recording: Recording, path: str | Path) -> None:
@@ -77,7 +79,7 @@ def bag_files(folder: Path) -> list[Path]:
     Raises
     ------
     InputError
-        There is none, or they are packed as a whole.
+        There is none, they are packed as a whole, or they are not of one bag.
     """
     files = sorted(
         (p for p in folder.iterdir() if p.suffix in (".mcap", ".db3") and p.is_file()),
@@ -89,7 +91,14 @@ def bag_files(folder: Path) -> list[Path]:
         if mode and mode[1].lower() in (b"file", b"message"):
             raise InputError(f"{folder} is a bag packed by {mode[1].decode().lower()}; unpack it with ros2 bag convert")
     if not files:
-        raise InputError(f"{folder} is a folder without a .mcap or .db3 file in it; a ROS 2 bag has one")
+        one = next((p for p in sorted(folder.iterdir()) if p.suffix.lower() in _LOGS and p.is_file()), None)
+        such = f", such as {one}" if one else ""
+        raise InputError(f"{folder} is a folder and no ROS 2 bag, as it has no .mcap or .db3 file in it; give one log{such}")
+    if not metadata.is_file() and len({re.sub(r"_\d+$", "", p.stem) for p in files}) > 1:
+        raise InputError(
+            f"{folder} has {len(files)} logs in it, {files[0].name} and {files[1].name} among them, which are not the parts of one bag "
+            f"(there is no metadata.yaml, and their names differ); give one of them, such as {files[0]}"
+        )
     return files
 
 

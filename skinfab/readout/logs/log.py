@@ -220,6 +220,8 @@ def _of_messages(path: Path, scan: Callable[[Budget], Iterator[Message]], size: 
     else:
         known = ", ".join(sorted({name.split("/")[-1] for name in STANDARD}))
         raise InputError(f"{path} has no topic that can be read: {', '.join(others.values()) or 'none at all'}; these types can: {known}")
+    if path.is_dir() and len(files := bag2.bag_files(path)) > 1 and not (path / "metadata.yaml").is_file():
+        notes.append(f"{path.name} has no metadata.yaml: {', '.join(file.name for file in files)} were read as the parts of one bag")
     if others:
         notes.append(f"{path.name}: passed over {', '.join(others.values())}")
     if damage:

@@ -97,6 +97,23 @@ def test_an_unknown_suffix_is_refused_and_nothing_is_overwritten(tmp_path: Path)
         write_log(recording(2), tmp_path / "none" / "bag")
 
 
+def test_a_folder_of_logs_is_no_bag(tmp_path: Path) -> None:
+    """Two recordings of one board, read one behind the other, would pass for one log."""
+    made = Recording.of_values(Stream("one", (Channel("U"),), 100.0), np.arange(9.0)[:, None], device_time=np.arange(9) / 100)
+    folder = tmp_path / "day"
+    folder.mkdir()
+    (folder / "notes.txt").write_text("x")
+    (folder / "a.csv").write_text("time,U\n0,1\n")
+    with pytest.raises(InputError, match=r"no ROS 2 bag, as it has no .mcap or .db3 file in it; give one log, such as .*a\.csv"):
+        read_log(folder)
+    for name in ("trial.mcap", "other.mcap"):
+        write_log(made, folder / name)
+    with pytest.raises(InputError, match=r"has 2 logs in it, other.mcap and trial.mcap among them, which are not the parts of one bag"):
+        read_log(folder)
+    (folder / "other.mcap").rename(folder / "trial_1.mcap")
+    assert read_log(folder).notes == ("day has no metadata.yaml: trial.mcap, trial_1.mcap were read as the parts of one bag",)
+
+
 def test_a_recording_as_a_table(tmp_path: Path) -> None:
     made = recording(400)
     write_log(made, tmp_path / "a.mcap")
