@@ -24,8 +24,7 @@ FLOORS = (
     ("files", "decimals", "linalg", "paths", "material", "progress", "staging", "archive", "spreadsheet"),
     ("mesh", "patterns", "electrical", "readout", "strip_fit", "strip_table"),
     ("pieces", "flatten"),
-    ("seams", "placement"),
-    ("skin",),
+    ("seams", "placement", "skin"),  # edits of seams and sensors take a skin and give one
     (
         *("document", "mould", "mould_plan", "mould_taper", "strip_plate", "wiring", "wire_exits", "wire_ways", "wire_choice"),
         *("recipe", "work_order", "drawings", "report"),
