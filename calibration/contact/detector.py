@@ -15,7 +15,9 @@ from numpy.typing import NDArray
 
 from calibration.contact import state as inner
 from calibration.contact.alarm import Alarm, alarm_for
-from calibration.contact.rest import STILL_FRAMES, STILL_S, at_rest
+from calibration.contact.clock import Clock, SetBack, longest_hole, rate_of
+from calibration.contact.health import Freeze, Health
+from calibration.contact.rest import AGAIN, STILL_FRAMES, STILL_S, at_rest, patience
 from skinfab.errors import InputError
 from skinfab.readout.frame import Frame, Recording, Stream
 
@@ -24,6 +26,8 @@ BoolArray = NDArray[np.bool_]
 
 #: False alarms a minute, all channels together, where nobody says otherwise: one in ten minutes.
 FALSE_ALARMS = 0.1
+#: A channel that could be frozen for longer than this, s, before its noise tells, does not tell.
+TELLS_S = 60.0
 
 
 @dataclass(frozen=True)
@@ -34,7 +38,7 @@ class Contact:
     ----------
     channel : str
     start, end : float, s
-        By the device's clock; the end is NaN while it lasts.
+        By the device's clock, carried on where it was set back; the end is NaN while it lasts.
     sign : int
         1 where the reading rises, -1 where it falls.
     strength : float
@@ -42,7 +46,7 @@ class Contact:
     saturated : bool
         The reading was at the end of its range meanwhile: the strength is at least this.
     dropped : bool
-        The channel fell silent meanwhile, and that is all that is known of the end.
+        The channel fell silent or froze, or the time has a hole: the end is the last that was read.
     """
 
     channel: str
@@ -59,48 +63,6 @@ class Contact:
         return math.isnan(self.end)
 
 
-@dataclass(frozen=True)
-class Health:
-    """What a channel was good for.
-
-    Parameters
-    ----------
-    channel : str
-    r0, noise : float
-        Reading at rest and its standard deviation; NaN where it never was at rest.
-    ready : float, s
-        From when on it was watched; NaN where it never was.
-    masked, saturated : float
-        Part of the frames in which it read nothing, or the end of its range.
-    constant : bool
-        It read one value only.
-    """
-
-    channel: str
-    r0: float
-    noise: float
-    ready: float
-    masked: float
-    saturated: float
-    constant: bool
-
-    @property
-    def fault(self) -> str:
-        """What is wrong with it, in a sentence; empty where nothing is."""
-        if self.masked == 1:
-            return f"channel {self.channel} never read anything; check its wires. The others go on without it"
-        if self.constant:
-            return f"channel {self.channel} read one value all the time; it is dead or not connected. The others go on without it"
-        if math.isnan(self.ready):
-            return f"channel {self.channel} never rested for {STILL_S:g} s, so its noise is not known; leave the object alone at first"
-        if self.masked > 0:
-            return f"channel {self.channel} read nothing in {100 * self.masked:.1f} % of the frames; contacts there are not seen"
-        if self.saturated > 0:
-            part = f"{100 * self.saturated:.1f} % of the frames"
-            return f"channel {self.channel} was at the end of its range in {part}; its bridge is off balance, or a wire open"
-        return ""
-
-
 @dataclass(frozen=True, eq=False)
 class Detection:
     """Contacts of a recording.
@@ -113,16 +75,30 @@ class Detection:
     alarm : Alarm
     false_alarms : float
         Expected a minute, all channels together.
+    set_back : tuple of SetBack
+        Where the clock was set back.
     """
 
     contacts: tuple[Contact, ...]
     channels: tuple[Health, ...]
     alarm: Alarm
     false_alarms: float
+    set_back: tuple[SetBack, ...] = ()
 
     def of(self, channel: str) -> tuple[Contact, ...]:
         """Those of one channel."""
         return tuple(each for each in self.contacts if each.channel == channel)
+
+    @property
+    def faults(self) -> tuple[str, ...]:
+        """What is wrong with the clock and the channels, and what it did to the contacts, a sentence each."""
+        found = [str(each) for each in self.set_back] + [fault for health in self.channels for fault in health.faults]
+        if cut := sum(each.dropped for each in self.contacts):
+            found.append(
+                f"{cut} contact{'s were' if cut > 1 else ' was'} cut short, where the time has a hole or the channel fell silent or froze; "
+                "the end is the last that was read"
+            )
+        return tuple(found)
 
 
 class ContactDetector:
@@ -166,18 +142,38 @@ class ContactDetector:
         self.alarm = alarm_for(false_alarms, channels=len(names), rate_hz=stream.rate_hz, still_frames=still)
         c = len(names)
         self._state, self._windows, self._effect = inner.fresh(c), np.zeros((c, still)), np.zeros(c, dtype=np.int64)
-        self._time, self._ended = -math.inf, list[Contact]()
-        self._ready, self._frames = np.full(c, math.nan), 0
+        self._clock, self._hole = Clock(stream.rate_hz), longest_hole(stream.rate_hz)
+        self._began, self._time, self._ended = math.nan, -math.inf, list[Contact]()
+        self._ready, self._frames = [math.nan] * c, 0
+        self._freezes: list[list[Freeze]] = [[] for _ in range(c)]
         self._masked, self._saturated = np.zeros(c, dtype=np.int64), np.zeros(c, dtype=np.int64)
         self._least, self._most = np.full(c, math.inf), np.full(c, -math.inf)
 
     @property
     def touched(self) -> tuple[str, ...]:
         """Channels that are being touched."""
-        return tuple(self._name(j) for j in np.flatnonzero(self._state["phase"] == inner.CONTACT).tolist())
+        return self._in(inner.CONTACT)
+
+    @property
+    def waiting(self) -> tuple[str, ...]:
+        """Channels that have not been at rest yet, and so are not watched."""
+        return self._in(inner.LEARNING)
+
+    @property
+    def frozen(self) -> tuple[str, ...]:
+        """Channels that have frozen."""
+        return self._in(inner.FROZEN)
+
+    @property
+    def now(self) -> float:
+        """The time of the last frame, s, carried on where the clock was set back."""
+        return self._time
 
     def step(self, frame: Frame) -> tuple[Contact, ...]:
-        """The contacts that this frame shows to have begun (their end is NaN) or to have ended."""
+        """The contacts that this frame shows to have begun (their end is NaN) or to have ended.
+
+        One that ends where it began is taken back: what made it was a channel that froze.
+        """
         return self._feed(np.array([frame.device_time]), frame.values[None], frame.valid[None], frame.saturated[None])
 
     def run(self, recording: Recording) -> Detection:
@@ -188,7 +184,7 @@ class ContactDetector:
     def found(self) -> Detection:
         """All contacts so far, those that have not ended too."""
         contacts = sorted([*self._ended, *self.lasting()], key=lambda each: (each.start, each.channel))
-        return Detection(tuple(contacts), self.health(), self.alarm, self.false_alarms)
+        return Detection(tuple(contacts), self.health(), self.alarm, self.false_alarms, tuple(self._clock.set_back))
 
     def lasting(self) -> list[Contact]:
         """The contacts that have not ended."""
@@ -197,18 +193,28 @@ class ContactDetector:
     def health(self) -> tuple[Health, ...]:
         """What each channel was good for so far."""
         frames = max(self._frames, 1)
-        return tuple(
-            Health(
-                self._name(j),
-                float(self._state["r0"][j]) if self._ready[j] == self._ready[j] else math.nan,
-                float(self._state["noise"][j]) if self._ready[j] == self._ready[j] else math.nan,
-                float(self._ready[j]),
-                float(self._masked[j]) / frames,
-                float(self._saturated[j]) / frames,
-                bool(self._least[j] == self._most[j]),
+        soonest = self._began + (self._windows.shape[1] - 1) / self.stream.rate_hz
+        found = []
+        for j, ready in enumerate(self._ready):
+            state, rested = self._state[j], not math.isnan(ready)
+            found.append(
+                Health(
+                    self._name(j),
+                    r0=float(state["r0"]) if rested else math.nan,
+                    noise=float(state["noise"]) if rested else math.nan,
+                    ready=ready,
+                    late=ready - soonest if rested else math.nan,
+                    watched=float(state["watched"]) / frames,
+                    masked=float(self._masked[j]) / frames,
+                    saturated=float(self._saturated[j]) / frames,
+                    constant=bool(self._least[j] == self._most[j]),
+                    tells=bool(state["patience"] <= TELLS_S * self.stream.rate_hz),
+                    least=float(self._least[j]),
+                    most=float(self._most[j]),
+                    freezes=tuple(self._freezes[j]),
+                )
             )
-            for j in range(len(self._columns))
-        )
+        return tuple(found)
 
     def _feed(self, time: FloatArray, values: FloatArray, valid: BoolArray, saturated: BoolArray) -> tuple[Contact, ...]:
         columns = self._columns
@@ -219,6 +225,9 @@ class ContactDetector:
         self._saturated += np.count_nonzero(saturated, axis=0)
         self._least = np.minimum(self._least, np.min(np.where(valid, values, math.inf), axis=0, initial=math.inf))
         self._most = np.maximum(self._most, np.max(np.where(valid, values, -math.inf), axis=0, initial=-math.inf))
+        time = self._clock.of(time)
+        if math.isnan(self._began) and (known := time[np.isfinite(time)]).size:
+            self._began = float(known[0])
         edges: list[Contact] = []
         k = 0
         while k < len(time):
@@ -234,25 +243,40 @@ class ContactDetector:
                 self._time,
                 self.alarm.threshold,
                 self.alarm.cap,
+                self._hole,
                 self._effect,
             )
             for j in np.flatnonzero(self._effect).tolist():
-                if self._effect[j] == inner.WINDOW_FULL:
-                    self._learn(j)
-                else:
-                    edges.append(self._contact(j, ended=self._effect[j] == inner.ENDED))
-        self._ended += [each for each in edges if not each.lasting]
+                edges += self._done(j, int(self._effect[j]))
+        self._ended += [each for each in edges if each.end > each.start]
         return tuple(edges)
 
+    def _done(self, j: int, effect: int) -> list[Contact]:
+        """What a frame brought about on a channel: the contact that it shows, if any."""
+        if effect == inner.WINDOW_FULL:
+            self._learn(j)
+        elif effect == inner.FROZE:
+            self._freezes[j].append(Freeze(float(self._state["one_since"][j]), math.nan, float(self._state["one"][j])))
+            return [self._contact(j, ended=True)] if self._state["cut"][j] else []
+        elif effect == inner.THAWED:
+            self._freezes[j][-1] = replace(self._freezes[j][-1], end=self._time)
+        else:
+            return [self._contact(j, ended=effect == inner.ENDED)]
+        return []
+
     def _learn(self, j: int) -> None:
-        """A window of readings is full: was the channel at rest? If not, the next one is tried."""
-        state = self._state[j]
-        state["filled"] = 0
-        if (found := at_rest(self._windows[j])) is None:
+        """A window of readings is full: was the channel at rest? If not, it is tried again a little later."""
+        state, window = self._state[j], self._windows[j]
+        if (found := at_rest(window)) is None:
+            passed = len(window) // AGAIN
+            window[:-passed] = window[passed:].copy()
+            state["filled"] = len(window) - passed
             return
-        last = self._windows[j][-2:]
         state["phase"], state["r0"], state["noise"], state["baseline"] = inner.REST, found.level, found.noise, found.level
-        state["before_that"], state["before"], state["seen"] = last[0], last[1], self._time
+        state["before_that"], state["before"], state["seen"] = window[-2], window[-1], self._time
+        wait = patience(window, found, rate_hz=self.stream.rate_hz)
+        state["within"], state["patience"] = wait.within, wait.frames
+        state["one"], state["one_since"], state["one_frames"] = window[-1], self._time, 1
         self._ready[j] = self._time
 
     def _contact(self, j: int, *, ended: bool) -> Contact:
@@ -266,6 +290,9 @@ class ContactDetector:
             bool(state["saturated"]),
             bool(state["dropped"]),
         )
+
+    def _in(self, phase: int) -> tuple[str, ...]:
+        return tuple(self._name(j) for j in np.flatnonzero(self._state["phase"] == phase).tolist())
 
     def _name(self, j: int) -> str:
         return self.stream.names[self._columns[j]]
@@ -303,9 +330,5 @@ def detect(recording: Recording, *, false_alarms: float = FALSE_ALARMS, channels
         raise InputError(
             f"{len(recording)} frames are too few to know a channel at rest; record {STILL_S:g} s without a touch, then the contacts"
         )
-    if not stream.rate_hz:
-        steps = np.diff(recording.device_time)
-        if not (steps > 0).any():
-            raise InputError("the time stands still in all frames; give a log with a column of times")
-        stream = replace(stream, rate_hz=float(1 / np.median(steps[steps > 0])))
+    stream = replace(stream, rate_hz=rate_of(recording))
     return ContactDetector(stream, false_alarms=false_alarms, channels=channels).run(recording)

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from calibration.contact.clock import longest_hole, on_one_clock, rate_of
 from calibration.contact.detector import Contact, Detection
 from skinfab.errors import InputError
 from skinfab.readout.frame import Recording
@@ -34,6 +35,10 @@ class Row:
         The mean over trials of the change as a part of that trial's own reading at rest, and its standard deviation.
     contacts, trials : int
         How many contacts in how many trials that is.
+    watched : float
+        Part of the frames, of all trials, in which a contact could be seen.
+    state : str
+        ``silent``, ``constant``, ``never at rest`` or ``frozen``, and in how many trials if not in all; empty where it was well.
     """
 
     channel: str
@@ -45,6 +50,8 @@ class Row:
     change_scatter: float
     contacts: int
     trials: int
+    watched: float
+    state: str
 
 
 def stable_level(recording: Recording, contact: Contact) -> float:
@@ -56,7 +63,7 @@ def stable_level(recording: Recording, contact: Contact) -> float:
     contact : Contact
         One that lasts ends with the recording.
     """
-    time, j = recording.device_time, recording.stream.index(contact.channel)
+    (time, _), j = on_one_clock(recording), recording.stream.index(contact.channel)
     end = float(np.nanmax(time)) if contact.lasting else contact.end
     edge = EDGES * (end - contact.start)
     good = (time >= contact.start + edge) & (time <= end - edge) & recording.valid[:, j] & ~recording.saturated[:, j]
@@ -118,7 +125,21 @@ def _row(name: str, j: int, trials: Sequence[tuple[Recording, Detection]]) -> Ro
         float(np.std(changes, ddof=1)) if len(changes) > 1 else math.nan,
         contacts,
         len(levels),
+        sum(found.channels[j].watched * len(recording) for recording, found in trials) / sum(len(recording) for recording, _ in trials),
+        _state([found.channels[j].state for _, found in trials]),
     )
+
+
+def _state(states: Sequence[str]) -> str:
+    """
+    Examples
+    --------
+    >>> _state(["frozen", "", "frozen"]), _state(["silent"]), _state(["", ""])
+    ('frozen in 2 of 3', 'silent', '')
+    """
+    of = len(states)
+    counts = {state: states.count(state) for state in states if state}
+    return ", ".join(state if count == of else f"{state} in {count} of {of}" for state, count in counts.items())
 
 
 def normalised(recording: Recording, found: Detection) -> FloatArray:
@@ -126,18 +147,46 @@ def normalised(recording: Recording, found: Detection) -> FloatArray:
 
     A channel that falls when it is touched goes up here as all others do; one that was never touched stays at 0.
     """
+    time, _ = on_one_clock(recording)
     out = np.zeros((len(recording), len(found.channels)))
     for k, health in enumerate(found.channels):
         j = recording.stream.index(health.channel)
-        good = recording.valid[:, j] & ~recording.saturated[:, j]
+        good = recording.valid[:, j] & ~recording.saturated[:, j] & np.isfinite(time)
+        for freeze in health.freezes:
+            good &= (time < freeze.start) | (time >= freeze.end)
         change = np.where(good, recording.values[:, j] - health.r0, np.nan)
         touched = np.zeros(len(recording), dtype=bool)
         for each in found.of(health.channel):
-            touched |= (recording.device_time >= each.start) & ~(recording.device_time > each.end)
+            touched |= (time >= each.start) & ~(time > each.end)
         if (good & touched).any() and not math.isnan(health.r0):
             under = change[good & touched]
             largest = under[np.argmax(np.abs(under))]
             out[:, k] = np.clip(change / largest, 0.0, 1.0) if largest else 0.0
-        else:
-            out[~good, k] = np.nan
+        out[~good, k] = np.nan
     return out
+
+
+def unwatched(recording: Recording, found: Detection, channel: str) -> list[tuple[float, float]]:
+    """From when to when, s, no contact of a channel could be seen: before it rested, while it was frozen, and in holes of the time.
+
+    Examples
+    --------
+    >>> from calibration.contact.detector import detect
+    >>> from calibration.contact.simulator import simulate
+    >>> log = simulate("grip", seed=1).recording
+    >>> [(start, round(end)) for start, end in unwatched(log, detect(log), "S1")]
+    [(0.0, 3)]
+    """
+    time = on_one_clock(recording)[0]
+    time = time[np.isfinite(time)]
+    (health,) = (each for each in found.channels if each.channel == channel)
+    end = float(time[-1])
+    if health.state in ("silent", "constant", "never at rest"):
+        return [(float(time[0]), end)]
+    hole = longest_hole(rate_of(recording))
+    holes = np.flatnonzero(np.diff(time) > hole)
+    return [
+        (float(time[0]), health.ready),
+        *((each.start, end if math.isnan(each.end) else each.end) for each in health.freezes),
+        *((float(time[k]), float(time[k + 1])) for k in holes if time[k] > health.ready),
+    ]

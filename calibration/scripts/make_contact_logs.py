@@ -31,9 +31,8 @@ if __name__ == "__main__":
     for seed in SEEDS:
         trial = simulate("cube", seed=seed)
         write_log(replace(trial.recording, values=rounded(trial.recording.values)), folder / f"contact_cube_{seed}.csv")
-        text = io.StringIO("# simulated: true\n")
-        text.seek(0, io.SEEK_END)
+        text = io.StringIO()
         rows = csv.writer(text, lineterminator="\n")
-        rows.writerow(["channel", "start_s", "end_s", "sign", "strength"])
-        rows.writerows([c.channel, f"{c.start:.3f}", f"{c.end:.3f}", c.sign, f"{c.strength:.4f}"] for c in trial.truth)
+        rows.writerow(["channel", "start_s", "end_s", "sign", "strength", "simulated"])
+        rows.writerows([c.channel, f"{c.start:.3f}", f"{c.end:.3f}", c.sign, f"{c.strength:.4f}", 1] for c in trial.truth)
         atomic_write(folder / f"contact_cube_{seed}_truth.csv", text.getvalue())

@@ -83,20 +83,21 @@ def run(args: argparse.Namespace) -> int:
     else:
         sessions, notes = _watched(args) if kind == "port" else _logged(args)
     from calibration.contact.table import contact_table
+    from skinfab.cli.contact_files import write_files
 
     tables = {name: contact_table([(each.recording, each.found) for each in trials]) for name, trials in sessions.items()}
     for trials in sessions.values():
         for each in trials:
-            notes += [f"{each.name}: {fault}" for health in each.found.channels if (fault := health.fault) and not scores]
+            notes += [f"{each.name}: {fault}" for fault in each.found.faults if not scores]
     result = _facts(args, sessions, tables, scores, notes)
-    _write(args.output, sessions, tables, result)
+    files = write_files(args.output, sessions, tables, result)
     if args.json:
         print(json.dumps(result, allow_nan=False))
         return 0
     steps.say(notes)
     for line in _lines(sessions, tables, result):
         print(line)
-    print(f"{args.output}: contact.png, events.csv, result.json, table.csv" + (", truth.csv" if scores else ""))
+    print(f"{args.output}: {', '.join(files)}")
     return 0
 
 
@@ -197,7 +198,7 @@ def _facts(
                     "sha256": each.sha256 or None,
                     "frames": len(each.recording),
                     "contacts": len(each.found.contacts),
-                    "channels": [asdict(health) | {"fault": health.fault} for health in each.found.channels],
+                    "channels": [asdict(health) | {"state": health.state, "faults": health.faults} for health in each.found.channels],
                 }
                 for each in trials
             ],
@@ -224,59 +225,6 @@ def _finite(value: Any) -> Any:
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
-def _write(folder: Path, sessions: dict[str, list[Trial]], tables: dict[str, tuple[Row, ...]], result: dict[str, Any]) -> None:
-    from calibration.contact.figure import Panel, draw_contacts
-    from skinfab.files import atomic_write
-
-    folder.mkdir(parents=True, exist_ok=True)
-    simulated = any(each["simulated"] for each in result["objects"].values())
-    everything = [(name, each) for name, trials in sessions.items() for each in trials]
-    head = ["object", "log", "channel", "start_s", "end_s", "sign", "strength", "saturated", "dropped"]
-    rows = [(name, each.name, c) for name, each in everything for c in each.found.contacts]
-    atomic_write(folder / "events.csv", _csv(head, [_event(*row) for row in rows], simulated))
-    if simulated and any(each.truth for _, each in everything):
-        true = [_event(name, each.name, c) for name, each in everything for c in each.truth]
-        atomic_write(folder / "truth.csv", _csv(head, true, simulated))
-    atomic_write(folder / "table.csv", _csv(*_table(tables), simulated))
-    atomic_write(folder / "result.json", json.dumps(result, indent=1, allow_nan=False) + "\n")
-    # The first trial of each object; of a single object its first trials.
-    panels = everything if len(sessions) == 1 else [(name, trials[0]) for name, trials in sessions.items()]
-    draw_contacts([Panel(each.name, each.recording, each.found, each.truth) for _, each in panels], folder / "contact.png")
-
-
-def _event(name: str, log: str, c: Contact) -> list[str]:
-    end = "" if c.lasting else f"{c.end:.3f}"
-    return [name, log, c.channel, f"{c.start:.3f}", end, str(c.sign), f"{c.strength:.4g}", str(int(c.saturated)), str(int(c.dropped))]
-
-
-def _table(tables: dict[str, tuple[Row, ...]]) -> tuple[list[str], list[list[str]]]:
-    head = ["object", "channel", "unit", "r0", "touched", "scatter", "change", "change_scatter", "contacts", "trials"]
-    rows = [
-        [
-            name,
-            row.channel,
-            row.unit,
-            *("" if math.isnan(x) else f"{x:.6g}" for x in (row.r0, row.touched, row.scatter, row.change, row.change_scatter)),
-            str(row.contacts),
-            str(row.trials),
-        ]
-        for name, table in tables.items()
-        for row in table
-    ]
-    return head, rows
-
-
-def _csv(head: list[str], rows: Sequence[list[str]], simulated: bool) -> str:
-    import csv
-    import io
-
-    text = io.StringIO()
-    if simulated:
-        text.write("# simulated: true\n")
-    csv.writer(text, lineterminator="\n").writerows([head, *rows])
-    return text.getvalue()
-
-
 def _lines(sessions: dict[str, list[Trial]], tables: dict[str, tuple[Row, ...]], result: dict[str, Any]) -> list[str]:
     lines = []
     for name, trials in sessions.items():
@@ -288,7 +236,8 @@ def _lines(sessions: dict[str, list[Trial]], tables: dict[str, tuple[Row, ...]],
             spread = "" if math.isnan(row.scatter) else f" +- {row.scatter:.4g}"
             change = "-" if math.isnan(row.change) else f"{100 * row.change:+.1f} %"
             touched = "-" if math.isnan(row.touched) else f"{row.touched:.4g}{spread}"
-            lines.append(f"  {row.channel:10s}{row.r0:10.4g}  {touched + ' ' + row.unit:22s}{change:>10s}{row.contacts:10d}")
+            state = f"  ({row.state})" if row.state else ""
+            lines.append(f"  {row.channel:10s}{row.r0:10.4g}  {touched + ' ' + row.unit:22s}{change:>10s}{row.contacts:10d}{state}")
     for name, each in result.get("evaluation", {}).items():
         lines += [f"{name}: {detector:16s}{_judged(of)}" for detector, of in each.items()]
     return lines

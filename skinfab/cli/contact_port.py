@@ -6,6 +6,7 @@ import math
 import signal
 import time
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from skinfab.cli import steps
@@ -17,6 +18,10 @@ if TYPE_CHECKING:
 
 #: How long to wait for a frame before looking whether time is up, s.
 _WAIT_S = 0.2
+#: Where the port does not say how many frames come a second, they are counted for so long, s, and so many of them.
+_COUNTED_S, _COUNTED = 2.0, 10
+#: Channels that are not watched yet are named this often, s of the stream.
+_NAMED_S = 10.0
 
 
 def watch_port(
@@ -24,10 +29,12 @@ def watch_port(
 ) -> tuple[Recording, Detection, list[str]]:
     """Watch a port until Ctrl-C, or for a while: its frames, the contacts in them, and what is to be said of it.
 
+    Where what it sends does not say how many frames come a second, as plain lines do not, they are counted first.
+
     Raises
     ------
     InputError
-        It cannot be opened, sends nothing, or has no such channel.
+        It cannot be opened, sends nothing, too little to know its rate, or has no such channel.
     """
     from calibration.contact.detector import ContactDetector
     from skinfab.errors import InputError
@@ -35,26 +42,75 @@ def watch_port(
     from skinfab.readout.serial_port import BAUD, SerialPort
 
     frames: list[Frame] = []
+    notes: list[str] = []
     with SerialPort(port, baud=baud or BAUD) as source:
-        watch = ContactDetector(source.stream, false_alarms=false_alarms, channels=channels)
+        stream, end = source.stream, time.monotonic() + (seconds or math.inf)
+        if not stream.rate_hz:
+            stream = replace(stream, rate_hz=_counted(source, frames, end))
+            notes.append(f"{port} does not say how many frames come a second; {stream.rate_hz:.4g} were counted")
+        watch = ContactDetector(stream, false_alarms=false_alarms, channels=channels)
+        told = _Told(watch)
         try:
-            _watch(source, watch, frames, time.monotonic() + (seconds or math.inf))
+            for frame in frames:
+                told.step(frame)
+            while (left := end - time.monotonic()) > 0:
+                if (got := source.read(min(left, _WAIT_S))) is not None:
+                    frames.append(got)
+                    told.step(got)
         except KeyboardInterrupt:
             signal.setitimer(signal.ITIMER_REAL, 0)  # the way to end it: it has got through, and is not to come a second time
         counts = source.counts
     if not frames:
         raise InputError(f"{port} sent no frame; is the device running?")
-    notes = [
+    notes += [
         f"{count} frames were {how}" for how, count in (("lost", counts.lost), ("damaged", counts.bad), ("late", counts.late)) if count
     ]
-    return Recording.of_frames(source.stream, frames), watch.found(), notes
+    return Recording.of_frames(stream, frames), watch.found(), notes
 
 
-def _watch(source: SerialPort, watch: ContactDetector, frames: list[Frame], end: float) -> None:
-    while (left := end - time.monotonic()) > 0:
-        if (frame := source.read(min(left, _WAIT_S))) is not None:
+def _counted(source: SerialPort, frames: list[Frame], end: float) -> float:
+    """How many frames come a second; those that were counted are put into `frames`.
+
+    Over all of them: lines arrive in bunches, so their distances say little.
+    """
+    from skinfab.errors import InputError
+
+    until = min(time.monotonic() + _COUNTED_S, end)
+    while (left := until - time.monotonic()) > 0 or (len(frames) < _COUNTED and time.monotonic() < end):
+        if (frame := source.read(min(max(left, 0.0) or _WAIT_S, _WAIT_S))) is not None:
             frames.append(frame)
-            steps.say([_told(each, frame.device_time) for each in watch.step(frame)], kind="contact")
+    spans = frames[-1].device_time - frames[0].device_time if len(frames) >= _COUNTED else 0.0
+    if not spans > 0:
+        raise InputError(f"{source.port} sent {len(frames)} frames, too few to count how many come a second; watch it for longer")
+    return (len(frames) - 1) / spans
+
+
+class _Told:
+    """Says what comes as it comes: contacts, channels that are watched, not yet or no more."""
+
+    def __init__(self, watch: ContactDetector) -> None:
+        self._watch, self._waiting, self._frozen = watch, watch.waiting, watch.frozen
+        self._next = math.nan
+
+    def step(self, frame: Frame) -> None:
+        """Give the detector a frame, and say what it brought about."""
+        watch = self._watch
+        contacts, now = watch.step(frame), watch.now
+        frozen = [name for name in watch.frozen if name not in self._frozen]
+        steps.say([_told(each, now) for each in contacts], kind="contact")
+        steps.say([f"{now:.2f} s, {name} froze; it is not watched, check its wires and its range" for name in frozen])
+        steps.say([f"{now:.2f} s, {name} reads again" for name in self._frozen if name not in watch.frozen])
+        if rested := [name for name in self._waiting if name not in watch.waiting]:
+            steps.say([f"{now:.2f} s, {', '.join(rested)} at rest; watched from now on"])
+        self._waiting, self._frozen = watch.waiting, watch.frozen
+        if math.isnan(self._next):
+            self._next = now + _NAMED_S
+        if self._waiting and now >= self._next:
+            from calibration.contact.rest import STILL_S
+
+            self._next = now + _NAMED_S
+            names = ", ".join(self._waiting)
+            steps.say([f"{now:.2f} s, {names} not watched yet: never at rest for {STILL_S:g} s, or silent; leave the object alone"])
 
 
 def _told(contact: Contact, now: float) -> str:
@@ -65,5 +121,7 @@ def _told(contact: Contact, now: float) -> str:
     >>> _told(Contact("S1", 5.0, 7.0, -1, 0.159), 7.01)
     '7.01 s, S1 let go after 2.00 s, -15.9 %'
     """
+    if contact.end == contact.start:
+        return f"{now:.2f} s, {contact.channel} was not touched at {contact.start:.2f} s: it had frozen"
     what = "touched" if contact.lasting else f"let go after {contact.end - contact.start:.2f} s"
     return f"{now:.2f} s, {contact.channel} {what}, {100 * contact.sign * contact.strength:+.1f} %"

@@ -62,7 +62,7 @@ def test_a_dead_channel_stops_none() -> None:
     log = skin(np.full(len(TIME), np.nan), touch(20, 22, 0.2))
     assert np.isnan(np.median(log.values[:300], axis=0)[0])  # what a reading at rest comes to
     found = detect(log)
-    assert [each.channel for each in found.contacts] == ["S2"] and "S1 never read anything" in found.channels[0].fault
+    assert [each.channel for each in found.contacts] == ["S2"] and "S1 never read anything" in found.channels[0].faults[0]
 
 
 def test_an_open_wire_reads_as_the_strongest_contact_of_all() -> None:
@@ -71,7 +71,7 @@ def test_an_open_wire_reads_as_the_strongest_contact_of_all() -> None:
     assert [each.sign for each in fixed_threshold(naive)] == [1]
     told = Recording.of_values(Stream("skin", (Channel("S1", high=500.0),), 100.0), np.minimum(values, 500), device_time=TIME)
     found = detect(told)
-    assert not found.contacts and "end of its range" in found.channels[0].fault
+    assert not found.contacts and "end of its range" in found.channels[0].faults[0]
 
 
 def test_creep_after_a_strong_contact_is_many_times_the_noise() -> None:

@@ -86,18 +86,19 @@ def test_a_channel_that_is_not_well_is_named_and_stops_no_other() -> None:
     values[:, 2] = 47.0
     found = detect(Recording.of_values(plain.stream, values, device_time=plain.device_time))
     assert spans(found, "S2") == near((5.0, 8.0, 1)) and {each.channel for each in found.contacts} == {"S2"}
-    first, second, third = (health.fault for health in found.channels)
-    assert "channel S1 never read anything" in first and second == "" and "channel S3 read one value" in third
+    (first,), none, (third,) = (health.faults for health in found.channels)
+    assert "channel S1 never read anything" in first and none == () and "channel S3 read one value" in third
+    assert [health.state for health in found.channels] == ["silent", "", "constant"]
 
 
 def test_a_channel_that_never_rests_is_named() -> None:
     found = detect(skin(0.3 * np.sin(TIME), touch(5, 8)))
-    assert "S1 never rested" in found.channels[0].fault and spans(found, "S2") == near((5.0, 8.0, 1))
+    assert "S1 never rested" in found.channels[0].faults[0] and spans(found, "S2") == near((5.0, 8.0, 1))
 
 
 def test_what_begins_with_a_touch_is_learnt_afterwards() -> None:
     found = detect(skin(touch(1, 2, time=TIME) + touch(10, 12)))
-    assert found.channels[0].ready == pytest.approx(6, abs=0.1) and spans(found) == near((10.0, 12.0, 1))
+    assert found.channels[0].ready == pytest.approx(5, abs=0.1) and spans(found) == near((10.0, 12.0, 1))
 
 
 @pytest.mark.parametrize(("silence", "expected"), [((6.0, 6.8), [(5.0, 8.0, False)]), ((6.0, 7.5), [(5.0, 6.0, True), (7.5, 8.0, False)])])
@@ -107,7 +108,7 @@ def test_a_short_silence_is_bridged_and_a_long_one_said(silence: tuple[float, fl
     found = detect(skin(change))
     assert spans(found) == near(*((start, end, 1) for start, end, _ in expected))
     assert [each.dropped for each in found.contacts] == [dropped for _, _, dropped in expected]
-    assert "read nothing in" in found.channels[0].fault
+    assert "read nothing in" in found.channels[0].faults[0]
 
 
 def test_a_press_into_the_end_of_the_range_is_flagged_and_an_open_wire_is_no_contact() -> None:
@@ -115,7 +116,7 @@ def test_a_press_into_the_end_of_the_range_is_flagged_and_an_open_wire_is_no_con
     found = detect(skin(touch(5, 8, 0.9) + open_wire, high=150.0))
     (only,) = found.contacts
     assert (only.start, only.end) == pytest.approx((5.0, 8.0), abs=0.1) and only.saturated and only.strength >= 0.2
-    assert "end of its range" in found.channels[0].fault
+    assert "end of its range" in found.channels[0].faults[0]
 
 
 def test_a_spike_is_no_contact_and_breaks_none() -> None:
