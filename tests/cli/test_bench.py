@@ -3,10 +3,13 @@ import signal
 import subprocess
 import sys
 import time
+from functools import partial
 from pathlib import Path
 
 import pytest
 
+from calibration.bench import calibrate
+from skinfab.bench import readout
 from skinfab.cli.bench import NAMES
 from skinfab.cli.main import main
 
@@ -21,6 +24,18 @@ def test_json_is_all_there_is_on_standard_output(tmp_path: Path, capsys: pytest.
     assert {row["triangles"] for row in shown["flatten"]["rows"]} == {294}
 
 
+@pytest.fixture
+def fewer(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Less of what --sizes does not make less; each measurement as a whole has its own test beside it."""
+    monkeypatch.setattr("gcode.bench.TOLERANCES", (0.05, 0.005))
+    monkeypatch.setattr("calibration.bench.control.GAINS", (1.0, 4.0, 7.0))
+    monkeypatch.setattr("calibration.bench.control.DELAYS_S", (0.05, 0.2))
+    monkeypatch.setattr("calibration.bench.control.PERIODS_S", (8.0, 2.0))
+    monkeypatch.setattr(calibrate, "measure", partial(calibrate.measure, seeds=(7,)))
+    monkeypatch.setattr(readout, "measure", partial(readout.measure, frames=300))
+
+
+@pytest.mark.usefixtures("fewer")
 def test_the_sentence_is_printed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["bench", "-o", str(tmp_path), *SMALL]) == 0
     out = capsys.readouterr().out.splitlines()
