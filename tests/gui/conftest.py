@@ -7,7 +7,15 @@ import shutil
 import subprocess
 from collections.abc import Iterator
 
+import numpy as np
 import pytest
+
+from gui.state.session import Session
+from skinfab.mesh.model import Mesh
+from skinfab.patterns.registry import make_pattern
+from skinfab.pieces import Piece
+from skinfab.placement.sensor import Sensor
+from skinfab.skin import Skin, Source
 
 SCREEN = "1280x800x24"
 
@@ -53,3 +61,27 @@ def root(display: str) -> Iterator[object]:
     window.destroy()
     if faults:
         raise faults[0]
+
+
+@pytest.fixture
+def skin() -> Skin:
+    """Two square pieces of 100 mm that lie side by side, with two sensors on the first; whatever is drawn on it is easily told."""
+    V = np.array([[0.0, 0, 0], [100, 0, 0], [100, 100, 0], [0, 100, 0], [200, 0, 0], [200, 100, 0]])
+    F = np.array([[0, 1, 2], [0, 2, 3], [1, 4, 5], [1, 5, 2]])
+    square = np.array([[0.0, 0], [100, 0], [100, 100], [0, 100]])
+    local = np.array([[0, 1, 2], [0, 2, 3]])
+    pieces = (
+        Piece("P1", np.array([0, 1]), np.array([0, 1, 2, 3]), local, square),
+        Piece("P2", np.array([2, 3]), np.array([1, 4, 5, 2]), local, square),
+    )
+    spiral = make_pattern("contact-spiral", {"s": 20})
+    sensors = (Sensor("C1", "P1", spiral, 50.0, 30.0, 0.0, 0), Sensor("C2", "P1", spiral, 50.0, 70.0, 0.0, 1))
+    return Skin(Mesh(V, F, "plate"), Source("plate.obj", "0" * 64, "mm", 1.0), np.array([[1, 2]]), pieces, sensors)
+
+
+@pytest.fixture
+def session(skin: Skin) -> Session:
+    """That skin, open and saved."""
+    made = Session()
+    made.open(skin, None)
+    return made

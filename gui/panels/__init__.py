@@ -1,0 +1,1 @@
+"""What stands beside the views: lists, forms, the status bar. Each panel listens to the session and knows no other panel."""

@@ -1,0 +1,111 @@
+"""An entry that takes a value when it is a good one, and says what is wrong while it is not."""
+
+from __future__ import annotations
+
+import math
+import tkinter as tk
+from collections.abc import Callable
+from tkinter import ttk
+
+from skinfab.errors import InputError, SkinfabError
+
+
+class Field(ttk.Frame):
+    """A label, an entry and a unit in a row.
+
+    Enter, Tab or a click elsewhere takes the text; Escape takes it back. What cannot be taken stays, in the colour of errors, with
+    its sentence given to `complain`.
+
+    Parameters
+    ----------
+    master : widget
+    label, unit : str
+    take : callable
+        Called with the text; raises SkinfabError where it is not good.
+    complain : callable
+        Called with a sentence, or "" once all is well again.
+    tip : str
+        Shown by `complain` while the pointer is over the label.
+    """
+
+    def __init__(
+        self,
+        master: tk.Misc,
+        label: str,
+        *,
+        take: Callable[[str], None],
+        complain: Callable[[str], None],
+        unit: str = "",
+        tip: str = "",
+        name: str,
+        width: int = 9,
+    ) -> None:
+        super().__init__(master, name=name)
+        self._take, self._complain = take, complain
+        self._shown = ""
+        self.columnconfigure(0, weight=1)
+        words = ttk.Label(self, text=label)
+        words.grid(row=0, column=0, sticky="w")
+        self.entry = ttk.Entry(self, width=width, justify="right", name="entry")
+        self.entry.grid(row=0, column=1, padx=4)
+        ttk.Label(self, text=unit, style="Faint.TLabel", width=5).grid(row=0, column=2, sticky="w")
+        for key in ("<Return>", "<KP_Enter>", "<FocusOut>"):
+            self.entry.bind(key, self._commit)
+        self.entry.bind("<Escape>", self._revert)
+        if tip:
+            words.bind("<Enter>", lambda event: complain(tip))
+            words.bind("<Leave>", lambda event: complain(""))
+
+    def show(self, text: str) -> None:
+        """Show a value, unless the user is at work on another."""
+        if self.entry.get() != self._shown and self.focus_displayof() is self.entry:
+            return
+        self._shown = text
+        self._write(text)
+
+    def _commit(self, event: tk.Event) -> None:
+        text = self.entry.get().strip()
+        if text == self._shown:
+            self._write(self._shown)
+            return
+        try:
+            self._take(text.replace(",", "."))
+        except SkinfabError as fault:
+            self.entry.state(["invalid"])
+            self._complain(str(fault))
+            return
+        self._shown = text
+        self.entry.state(["!invalid"])
+        self._complain("")
+
+    def _revert(self, event: tk.Event) -> str:
+        self._write(self._shown)
+        self._complain("")
+        return "break"
+
+    def _write(self, text: str) -> None:
+        self.entry.state(["!invalid"])
+        self.entry.delete(0, "end")
+        self.entry.insert(0, text)
+
+
+def number(text: str, what: str) -> float:
+    """A finite number from a field's text.
+
+    Raises
+    ------
+    InputError
+        It is none; names `what`.
+
+    Examples
+    --------
+    >>> number("12.5", "x")
+    12.5
+    """
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise InputError(f"{what} is {text!r}; it must be a number")
+    return value

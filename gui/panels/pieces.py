@@ -1,0 +1,68 @@
+"""The list of flat pieces with their size and distortion."""
+
+from __future__ import annotations
+
+import tkinter as tk
+from tkinter import ttk
+
+from gui.state.derived import Derived
+from gui.state.selection import NOTHING, Target
+from gui.state.session import Session
+
+_COLUMNS = (("id", "piece", 48), ("size", "size, mm", 92), ("mean", "d mean", 54), ("p99", "p99", 46), ("max", "max", 46))
+
+
+class PiecesPanel(ttk.Frame):
+    """One line a piece; the selection is the views' own."""
+
+    def __init__(self, master: tk.Misc, session: Session, derived: Derived) -> None:
+        super().__init__(master, name="pieces", padding=4)
+        self._session, self._derived = session, derived
+        self.summary = tk.StringVar(self)
+        ttk.Label(self, textvariable=self.summary, style="Faint.TLabel", wraplength=290, name="summary").pack(anchor="w", pady=(0, 2))
+        rows = ttk.Frame(self)
+        rows.pack(fill="both", expand=True)
+        self.list = ttk.Treeview(rows, columns=[c[0] for c in _COLUMNS], show="headings", height=4, selectmode="browse", name="list")
+        for name, heading, width in _COLUMNS:
+            self.list.heading(name, text=heading)
+            self.list.column(name, width=width, minwidth=width, anchor="w" if name == "id" else "e", stretch=name == "size")
+        bar = ttk.Scrollbar(rows, command=self.list.yview)
+        self.list.configure(yscrollcommand=bar.set)
+        bar.pack(side="right", fill="y")
+        self.list.pack(side="left", fill="both", expand=True)
+        self.list.bind("<<TreeviewSelect>>", self._chosen)
+        session.listen("skin", self._refresh)
+        session.listen("selection", self._follow)
+        self._refresh()
+
+    def _refresh(self) -> None:
+        skin = self._session.skin
+        self.list.delete(*self.list.get_children())
+        if skin is None:
+            self.summary.set("Nothing is open.")
+            return
+        for piece in skin.pieces:
+            d = self._derived.distortion(skin.mesh, piece)
+            size = f"{piece.size[0]:.0f} x {piece.size[1]:.0f}"
+            self.list.insert("", "end", iid=piece.id, values=(piece.id, size, f"{d.mean:.3f}", f"{d.p99:.2f}", f"{d.max:.2f}"))
+        loose = int((self._derived.piece_of_face(skin) < 0).sum())
+        words = f"{len(skin.mesh.F)} triangles, {len(skin.pieces)} piece{'' if len(skin.pieces) == 1 else 's'}"
+        self.summary.set(words + (f"; {loose} triangles do not lie flat yet" if loose else ""))
+        self._follow()
+
+    def _follow(self) -> None:
+        """Select what the session has selected."""
+        piece = self._session.selected.piece
+        wanted = (piece,) if piece and self.list.exists(piece) else ()
+        if self.list.selection() != wanted:
+            self.list.selection_set(wanted)
+            if wanted:
+                self.list.see(piece)
+
+    def _chosen(self, event: tk.Event) -> None:
+        chosen = self.list.selection()
+        selected = self._session.selected
+        if chosen and chosen[0] != selected.piece:
+            self._session.select(Target(piece=chosen[0]))
+        elif not chosen and selected.piece and not selected.sensor:
+            self._session.select(NOTHING)

@@ -1,0 +1,58 @@
+"""A field takes good values, keeps bad ones in sight and says why."""
+
+import pytest
+
+from gui.panels.field import Field, number
+from skinfab.errors import InputError
+
+
+@pytest.fixture
+def field(root):
+    taken, said = [], []
+
+    def take(text):
+        taken.append(number(text, "x"))
+
+    made = Field(root, "x", unit="mm", take=take, complain=said.append, name="x", tip="where it lies")
+    made.pack()
+    made.show("5")
+    made.taken, made.said = taken, said
+    made.entry.focus_force()
+    root.update()
+    return made
+
+
+def write(root, field, text, key):
+    field.entry.delete(0, "end")
+    field.entry.insert(0, text)
+    field.entry.event_generate(key)
+    root.update()
+
+
+def test_enter_takes_the_value_once(root, field):
+    write(root, field, "12,5", "<Return>")
+    field.entry.event_generate("<FocusOut>")
+    root.update()
+    assert field.taken == [12.5] and field.entry.get() == "12,5"
+
+
+def test_what_is_no_number_stays_and_is_said(root, field):
+    write(root, field, "twelve", "<Return>")
+    assert field.said[-1] == "x is 'twelve'; it must be a number" and field.entry.instate(["invalid"])
+    write(root, field, "twelve", "<Escape>")
+    assert field.entry.get() == "5" and not field.entry.instate(["invalid"]) and field.taken == []
+
+
+def test_a_new_value_does_not_overwrite_what_is_being_typed(root, field):
+    field.entry.insert("end", "1")
+    field.show("7")
+    assert field.entry.get() == "51"
+    write(root, field, "51", "<Escape>")
+    field.show("7")
+    assert field.entry.get() == "7"
+
+
+@pytest.mark.parametrize("text", ["", "nan", "inf", "1e999", "0x10"])
+def test_only_finite_numbers_are_numbers(text):
+    with pytest.raises(InputError, match="must be a number"):
+        number(text, "y")
