@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from calibration.strain.document import SensorCalibration
 from calibration.strain.prepare import CUTOFF_HZ
 from calibration.strain.reading import AngleReader, frame_rate
+from calibration.strain.time_figure import Panel
 from skinfab.errors import InputError
 from skinfab.readout.bridge import QuarterBridge, at_rest, relative
 from skinfab.readout.filters import Lowpass
@@ -184,17 +185,18 @@ def _bridges(recording: Recording, bridge: tuple[float, float], rate: float) -> 
 
 def drawn(
     columns: Mapping[str, Sequence[float]], recording: Recording, calibration: SensorCalibration | None
-) -> tuple[FloatArray, dict[str, FloatArray], str, NDArray[np.bool_] | None]:
-    """What `draw_over_time` wants: time, curves, the quantity, and what is flagged."""
+) -> tuple[FloatArray, list[Panel]]:
+    """What `draw_over_time` wants: time from the first frame on, and the panels: the angle, or each channel, or what bridges make of it."""
     time = np.array(columns["time_s"])
     since = time - time[np.isfinite(time)][0] if np.isfinite(time).any() else time
     if calibration is not None:
         curves = {calibration.angle: np.array(columns[TRUTH])} if TRUTH in columns else {}
         curves[f"{calibration.signal}, {calibration.model.name}"] = np.array(columns[ANGLE])
-        return since, curves, "angle (deg)", np.array(columns[OUTSIDE]) > 0
-    changes = {name.removesuffix(" (dR/R0)"): 100 * np.array(values) for name, values in columns.items() if name.endswith(" (dR/R0)")}
+        return since, [Panel("angle (deg)", curves, np.array(columns[OUTSIDE]) > 0)]
+    changes = [name for name in columns if name.endswith(" (dR/R0)")]
     if changes:
-        return since, changes, r"$\Delta R / R_0$ (%)", None
-    units = {channel.unit for channel in recording.stream.channels}
-    quantity = f"reading ({units.pop()})" if len(units) == 1 and units != {""} else "reading"
-    return since, {name: np.array(columns[name]) for name in recording.stream.names}, quantity, None
+        return since, [Panel(f"{name.removesuffix(')')}, %)", {name: 100 * np.array(columns[name])}) for name in changes]
+    units = {channel.name: f"{channel.name} ({channel.unit})" if channel.unit else channel.name for channel in recording.stream.channels}
+    # A heading that holds its unit already is not given it twice.
+    titles = {name: name if name.endswith((")", "]")) else unit for name, unit in units.items()}
+    return since, [Panel(title, {name: np.array(columns[name])}) for name, title in titles.items()]

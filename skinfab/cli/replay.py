@@ -156,10 +156,10 @@ def _write(output: Path, columns: dict[str, list[float]], result: dict[str, Any]
     rows.writerow(columns)
     for row in zip(*columns.values(), strict=True):
         rows.writerow(["" if math.isnan(value) else f"{value:.12g}" for value in row])
-    time, curves, quantity, flagged = drawn(columns, log.recording, calibration)
+    time, panels = drawn(columns, log.recording, calibration)
     with staged_folder(output) as folder:
         atomic_write(folder / "replay.csv", text.getvalue())
-        draw_over_time(time, curves, folder / "replay.png", title=f"{log.file}", quantity=quantity, simulated=simulated, flagged=flagged)
+        draw_over_time(time, panels, folder / "replay.png", title=log.file, simulated=simulated)
         atomic_write(folder / "result.json", json.dumps(result, indent=1, allow_nan=False) + "\n")
 
 

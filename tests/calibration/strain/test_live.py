@@ -35,8 +35,20 @@ def test_through_a_bridge() -> None:
     assert np.allclose(table["S0 (kohm)"], 150 * (1 + 0.3 * np.clip(np.sin(made.device_time) - 0.2, 0, None)))
     assert max(table["S0 (dR/R0)"]) == pytest.approx(0.24, abs=1e-3) and min(table["S0 (dR/R0)"]) == 0
     assert live.facts(table)["r0_kohm"] == {"S0": pytest.approx(150)}
-    time, curves, quantity, flagged = drawn(table, made, None)
-    assert list(curves) == ["S0"] and "R_0" in quantity and flagged is None and time[0] == 0
+    time, (panel,) = drawn(table, made, None)
+    assert panel.quantity == "S0 (dR/R0, %)" and panel.flagged is None and time[0] == 0
+    assert panel.curves["S0 (dR/R0)"].max() == pytest.approx(24, abs=0.1)
+
+
+def test_a_panel_a_channel_with_its_unit_once() -> None:
+    made = recording("V", "pF")
+    named = Recording.of_values(
+        Stream("skin", (Channel("S0", "V"), Channel("C (pF)", "pF"), Channel("n")), 100.0),
+        np.column_stack([made.values, made.values[:, 0]]),
+        device_time=made.device_time,
+    )
+    _, panels = drawn(columns(Live(named.stream, named, None), named), named, None)
+    assert [panel.quantity for panel in panels] == ["S0 (V)", "C (pF)", "n"]
 
 
 def test_a_dead_bridge_has_no_rest() -> None:
