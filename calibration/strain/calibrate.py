@@ -1,8 +1,10 @@
 """Fit a strain sensor to joint angles: how many degrees the curve needs, which model the log needs, and how well it will do.
 
-Degree and model are chosen by cross-validation, trial by trial or, where none are marked, half by half: the simplest
-whose error is within one standard error of the least. What is handed out is fitted to the whole log; the errors reported
-are those on its second half (or that of its trials) of a model that was fitted to the first.
+Degree and model are chosen by cross-validation within the first half of the log, which all are fitted to; the errors reported
+are those on the second half, which takes part in neither. Where trials are marked, halves and folds are of whole trials, and the
+simplest is taken whose error is within one standard error of the least. Where they are not, folds are stretches of time: each
+sees other angles, so that their scatter says little of the models', and the lowest degree within 2 % of the least is taken, and the
+simplest model within 5 %. What is handed out is fitted to the whole log.
 """
 
 from __future__ import annotations
@@ -25,7 +27,9 @@ Name = TypeVar("Name", str, int)
 
 #: The highest degree that is tried: the paper needed 3 and 4.
 MAX_DEGREE = 6
-#: A model whose error is above this part of the chosen one's did not do better to speak of.
+#: Without marked trials a lower degree counts as equal up to this times the least cross-validated error.
+WITHIN = 1.02
+#: A model whose error is above this part of a simpler one's did not do better to speak of.
 SAME = 0.95
 #: So many samples are timed, one by one.
 _TIMED = 2000
@@ -116,19 +120,22 @@ def calibrate(log: Prepared, *, model: str = "auto", degree: int | None = None) 
         raise InputError("one half of the log has no sample in the range of angles, so that nothing could be held out; record a longer log")
     notes: list[str] = list(log.notes)
     degrees = range(1, MAX_DEGREE + 1) if degree is None else (degree,)
+    folds = log.folds
     tried: dict[str, dict[int, Trial]] = {}
     for name in MODELS:
-        try:
-            tried[name] = {each: _trial(log, name, each) for each in degrees}
-        except InputError as fault:
-            if name == model:
-                raise
-            notes.append(f"model {name} was left out: {fault}")
+        found, said = _trials(folds, name, degrees)
+        if found:
+            tried[name] = found
+        elif name == model:
+            raise InputError(said)
+        else:
+            notes.append(f"model {name} was left out: {said}")
     if not tried:
-        raise InputError("no model can be fitted to each half of the log: " + notes[-1])
-    wanted = {name: _simplest(each) for name, each in tried.items()}
+        raise InputError("no model can be fitted to the first half of the log: " + notes[-1])
+    wanted = {name: _within_an_error(each) if log.by_trial else _within_a_part(each, WITHIN) for name, each in tried.items()}
     if model == "auto":
-        model = _simplest({name: tried[name][wanted[name]] for name in tried})
+        rest = {name: tried[name][wanted[name]] for name in tried}
+        model = _within_an_error(rest) if log.by_trial else _within_a_part(rest, 1 / SAME)
     degree = wanted[model]
     fitted = MODELS[model].fit(log.runs, degree=degree)
     scores = {name: _score(MODELS[name].fit(log.only(first), degree=wanted[name]), log.only(second), wanted[name]) for name in tried}
@@ -188,20 +195,32 @@ class Trial:
         return float(np.average(self.squares, weights=self.sizes))
 
 
-def _trial(log: Prepared, name: str, degree: int) -> Trial:
-    """Fit without each trial in turn and judge on it; where no trials are marked, without each half."""
-    parts = [(k,) for k in log.labels] if log.marked else log.halves
+def _trials(
+    folds: Sequence[tuple[Sequence[Samples], Sequence[Samples]]], name: str, degrees: Sequence[int]
+) -> tuple[dict[int, Trial], str]:
+    """A model judged at each degree that can be fitted to all folds, and why not where none can."""
+    tried: dict[int, Trial] = {}
+    said = ""
+    for degree in degrees:
+        try:
+            tried[degree] = _trial(folds, name, degree)
+        except InputError as fault:
+            said = said or str(fault)
+    return tried, said
+
+
+def _trial(folds: Sequence[tuple[Sequence[Samples], Sequence[Samples]]], name: str, degree: int) -> Trial:
+    """Fit to each fold and judge on what it leaves out."""
     squares, sizes = [], []
-    for part in parts:
-        model = MODELS[name].fit(log.only([k for k in log.labels if k not in part]), degree=degree)
-        for k in part:
-            errors = angle_errors(model, log.only([k]))
+    for fitted, held_out in folds:
+        errors = angle_errors(MODELS[name].fit(fitted, degree=degree), held_out)
+        if len(errors):
             squares.append(float(np.mean(errors**2)))
             sizes.append(len(errors))
     return Trial(np.array(squares), np.array(sizes, dtype=float))
 
 
-def _simplest(tried: Mapping[Name, Trial]) -> Name:
+def _within_an_error(tried: Mapping[Name, Trial]) -> Name:
     """The first of what is tried (the simplest comes first) whose error is within one standard error of the least.
 
     Groups differ from each other more than models do, so the difference is judged group by group.
@@ -212,6 +231,12 @@ def _simplest(tried: Mapping[Name, Trial]) -> Name:
         if trial.mean - best.mean <= np.std(more, ddof=1) / np.sqrt(len(more)):
             return name
     raise AssertionError("the best is within any error of itself")
+
+
+def _within_a_part(tried: Mapping[Name, Trial], times: float) -> Name:
+    """The first of what is tried whose error is at most so many times the least."""
+    least = min(trial.mean for trial in tried.values())
+    return next(name for name, trial in tried.items() if trial.mean <= times**2 * least)
 
 
 def _score(model: Model, held_out: Sequence[Samples], degree: int) -> Score:

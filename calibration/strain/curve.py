@@ -158,9 +158,13 @@ class Curve:
 
 def bernstein(x: FloatArray, degree: int) -> FloatArray:
     """The Bernstein polynomials of a degree at x (...), (..., degree + 1)."""
-    k = np.arange(degree + 1)
-    x = np.asarray(x, dtype=float)[..., None]
-    out: FloatArray = comb(degree, k) * x**k * (1 - x) ** (degree - k)
+    x = np.asarray(x, dtype=float)
+    # Products in turn: a power of a float takes ten times as long, and fits do little else.
+    up, down = np.ones((*x.shape, degree + 1)), np.ones((*x.shape, degree + 1))
+    for k in range(1, degree + 1):
+        up[..., k] = up[..., k - 1] * x
+        down[..., degree - k] = down[..., degree - k + 1] * (1 - x)
+    out: FloatArray = comb(degree, np.arange(degree + 1)) * up * down
     return out
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calibration.strain.models import Samples
+from calibration.strain.rows import in_order, spikes
 from skinfab.errors import InputError
 from skinfab.readout.bridge import STILL_S, at_rest, relative
 from skinfab.readout.filters import Lowpass
@@ -22,8 +23,11 @@ BoolArray = NDArray[np.bool_]
 CUTOFF_HZ = 5.0
 #: A hole in the log is bridged by a straight line up to this, s; at 5 Hz nothing is lost that the filter would have kept.
 MAX_GAP_S = 0.1
+#: A reading that changes by more than so many times the one at rest is said, for the log may have been zeroed: the seed's sensors
+#: change by 0.04 and 0.4, strong ones by a few; and one beyond the second is refused.
+LARGE_CHANGE, ABSURD_CHANGE = 5.0, 100.0
 #: Into so many parts each half of a log without marked trials is cut for cross-validation.
-PARTS = 5
+PARTS = 8
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,6 +78,31 @@ class Prepared:
         return tuple(k for k in labels if k < PARTS), tuple(k for k in labels if k >= PARTS)
 
     @property
+    def folds(self) -> list[tuple[tuple[Samples, ...], tuple[Samples, ...]]]:
+        """Of what is fitted: without each of its trials in turn and that trial, or its parts where there are not two trials."""
+        first, _ = self.halves
+        if len(first) > 1:
+            return [(self.only([k for k in first if k != out]), self.only([out])) for out in first]
+        runs = self.only(first)
+        total = max(sum(int(run.fit.sum()) for run in runs), 1)
+        parts, before = [], 0
+        for run in runs:
+            parts.append((before + np.cumsum(run.fit) - 1) * PARTS // total)
+            before += int(run.fit.sum())
+        return [
+            tuple(
+                tuple(replace(run, fit=run.fit & ((part == out) == held)) for run, part in zip(runs, parts, strict=True))
+                for held in (False, True)
+            )  # type: ignore[misc]
+            for out in range(PARTS)
+        ]
+
+    @property
+    def by_trial(self) -> bool:
+        """Are folds trials, and enough of them for a standard error?"""
+        return self.marked and len(self.halves[0]) > 2
+
+    @property
     def labels(self) -> tuple[int, ...]:
         """The groups that have samples that count, in the order of time."""
         found = [of[run.fit] for run, of in zip(self.runs, self.groups, strict=True)]
@@ -100,20 +129,32 @@ def prepare(
     Raises
     ------
     InputError
-        A column is missing, times run backwards, or hardly a sample is left; what and where is said.
+        A column is missing, rows are not in the order of time, the reading at rest is next to nothing, or
+        hardly a sample is left; what and where is said.
     """
     time, readings, angles = table.time, table.column(signal), table.column(angle)
     if signal == angle:
         raise InputError(f"{signal!r} is named as signal and as angle; they must be two columns")
-    notes: list[str] = [*table.notes]
+    time, notes = in_order(time, table.file)
+    notes = [*table.notes, *notes]
     forward = np.concatenate([[True], np.diff(time) > 0])
     forward &= time >= np.maximum.accumulate(time)
     if count := int(np.count_nonzero(~forward)):
         first = int(np.argmin(forward)) + 1
         notes.append(f"{table.file}: {count} of {len(time)} rows stand still or go back in time (row {first} first); they were left out")
-    whole = forward & np.isfinite(readings) & np.isfinite(angles)
-    if count := int(np.count_nonzero(forward & ~whole)):
+    there = np.isfinite(readings) & np.isfinite(angles)
+    if count := int(np.count_nonzero(forward & ~there)):
         notes.append(f"{table.file}: {count} of {len(time)} rows have no reading or no angle; they are bridged up to {MAX_GAP_S:g} s")
+    whole = forward & there
+    for name, values in ((signal, readings), (angle, angles)):
+        absurd = spikes(values) & whole
+        if count := int(np.count_nonzero(absurd)):
+            k = int(np.argmax(absurd))
+            notes.append(
+                f"{table.file}, row {k + 1}: {name!r} is {values[k]:g}, out of its neighbours by more than all of the log moves; "
+                + (f"{count} such rows are left out" if count > 1 else "the row is left out")
+            )
+        whole &= ~absurd
     if np.count_nonzero(whole) < 3:
         raise InputError(f"{table.file}: fewer than 3 rows have a time, a {signal!r} and a {angle!r}; record more")
     time, readings, angles = time[whole], readings[whole], angles[whole]
@@ -146,8 +187,7 @@ def prepare(
                 f"{table.file}: the joint never rests for {STILL_S:g} s; U0 is the median of the stillest such window, at "
                 f"{rest.at_s:.1f} s, where it moves by {100 * rest.moved:.0f} % of the span"
             )
-    if not u0:
-        raise InputError(f"{table.file}: {signal!r} is 0 at rest, so that a relative change means nothing; is it zeroed already?")
+    _require_rest(u0, readings, np.flatnonzero(whole), signal, table.file, notes)
     limits = limits or _usual_limits(np.concatenate([run[2] for run in filtered]), table.file, notes)
     runs = tuple(Samples(t, relative(u, u0), a, (a >= limits[0]) & (a <= limits[1])) for t, u, a, _ in filtered)
     if not any(run.fit.any() for run in runs):
@@ -158,6 +198,25 @@ def prepare(
         )
     groups = _groups(runs, [label for _, _, _, label in filtered] if trials is not None else None)
     return Prepared(runs, groups, trials is not None, *limits, u0, rate, tuple(notes))
+
+
+def _require_rest(u0: float, readings: FloatArray, rows: NDArray[np.int64], signal: str, file: str, notes: list[str]) -> None:
+    """A reading at rest that the others can be relative to."""
+    if not u0:
+        raise InputError(f"{file}: {signal!r} is 0 at rest, so that a relative change means nothing; is it zeroed already?")
+    change = np.abs(relative(readings, u0))
+    most = int(np.argmax(change))
+    if change[most] > ABSURD_CHANGE:
+        raise InputError(
+            f"{file}: {signal!r} is {u0:g} at rest and {readings[most]:g} in row {rows[most] + 1}, a relative change of "
+            f"{change[most]:.3g}, which no sensor has; if the log was zeroed, add the reading at rest again; if the row is wrong, "
+            "take it out"
+        )
+    if change[most] > LARGE_CHANGE:
+        notes.append(
+            f"{file}: {signal!r} is {u0:g} at rest and {readings[most]:g} in row {rows[most] + 1}, a relative change of "
+            f"{change[most]:.3g}: was the log zeroed? Then add the reading at rest again, or a small drift of it changes all angles"
+        )
 
 
 def _runs(time: FloatArray, trials: FloatArray | None, rate: float) -> list[slice]:

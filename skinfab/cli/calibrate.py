@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import math
+import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -67,23 +68,31 @@ def run(args: argparse.Namespace) -> int:
     if args.limits and not (math.isfinite(sum(args.limits)) and args.limits[0] < args.limits[1]):
         args.wrong_usage(f"--range {args.limits[0]:g} {args.limits[1]:g}: the first must be below the second")
     from calibration.strain.calibrate import calibrate
+    from calibration.strain.clock import clock_facts, clock_line
     from calibration.strain.prepare import prepare
     from skinfab.readout.logs.log import read_log_table
+    from skinfab.staging import staged_folder
 
     limits = tuple(args.limits) if args.limits else None
     table, said = read_log_table(args.log)
+    _require_own(args.output, table)
     log = prepare(table, signal=args.signal, angle=args.angle, limits=limits)
     found = calibrate(log, model=args.model, degree=args.degree)
+    clock, clock_notes = clock_facts(log)
     tasks = [_new_task(path, args, log, found) for path in args.new_task]
-    result = facts(table, log, found) | ({"new_tasks": tasks} if tasks else {})
-    result["notes"] = [*said, *result["notes"]]
-    _write(args, table, log, found, result)
+    result = facts(table, log, found) | {"clock": clock} | ({"new_tasks": tasks} if tasks else {})
+    # What the clocks do comes first: where they do not agree, nothing else counts.
+    result["notes"] = [*clock_notes, *said, *result["notes"], *(note for task in tasks for note in task["notes"])]
+    with staged_folder(args.output) as folder:
+        _write(args, folder, table, log, found, result)
     if args.json:
         print(json.dumps(result, allow_nan=False))
         return 0
     steps.say(result["notes"])
     for line in _lines(found, tasks):
         print(line)
+    if clock:
+        print(clock_line(clock))
     print(f"{args.output}: calibration.json, calibration.png, result.json, samples.csv")
     return 0
 
@@ -131,11 +140,30 @@ def _new_task(path: Path, args: argparse.Namespace, log: Prepared, found: Calibr
     from calibration.strain.prepare import prepare
     from skinfab.readout.logs.log import read_log_table
 
-    other = prepare(read_log_table(path)[0], signal=args.signal, angle=args.angle, limits=(log.low, log.high), u0=log.u0)
-    return {"file": path.name, "n": other.n, "models": {name: {"rms_deg": error} for name, error in rms_on(log, found, other).items()}}
+    table, said = read_log_table(path)
+    other = prepare(table, signal=args.signal, angle=args.angle, limits=(log.low, log.high), u0=log.u0)
+    errors = {name: {"rms_deg": error} for name, error in rms_on(log, found, other).items()}
+    return {"file": path.name, "n": other.n, "models": errors, "notes": [*said, *other.notes]}
 
 
-def _write(args: argparse.Namespace, table: Table, log: Prepared, found: Calibration, result: dict[str, Any]) -> None:
+def _require_own(folder: Path, table: Table) -> None:
+    """Nothing there, or what this log gave before: a calibration of another sensor is not lost to a slip of the keyboard."""
+    from calibration.strain.document import load_calibration
+    from skinfab.errors import InputError
+
+    path = folder / "calibration.json"
+    if not os.path.lexists(path):
+        return
+    again = "give another -o, or remove it first"
+    try:
+        made_from = load_calibration(path).made_from
+    except InputError as fault:
+        raise InputError(f"{path} is there already and is not a calibration that could be made anew ({fault}); {again}") from fault
+    if made_from.get("sha256") != table.sha256:
+        raise InputError(f"{path} is there already and is of another log, {made_from.get('file')}; {again}")
+
+
+def _write(args: argparse.Namespace, folder: Path, table: Table, log: Prepared, found: Calibration, result: dict[str, Any]) -> None:
     import csv
     import io
 
@@ -143,9 +171,8 @@ def _write(args: argparse.Namespace, table: Table, log: Prepared, found: Calibra
     from calibration.strain.figure import draw_calibration
     from skinfab.files import atomic_write
 
-    args.output.mkdir(parents=True, exist_ok=True)
-    save_calibration(_calibration(args, table, log, found), args.output / "calibration.json")
-    atomic_write(args.output / "result.json", json.dumps(result, indent=1, allow_nan=False) + "\n")
+    save_calibration(_calibration(args, table, log, found), folder / "calibration.json")
+    atomic_write(folder / "result.json", json.dumps(result, indent=1, allow_nan=False) + "\n")
     text = io.StringIO()
     if table.simulated:
         text.write("# simulated: true\n")
@@ -156,9 +183,9 @@ def _write(args: argparse.Namespace, table: Table, log: Prepared, found: Calibra
         columns = (each.time, each.angle, each.signal, estimate)
         numbers = [[f"{value:.9g}" for value in column.tolist()] for column in columns]
         rows.writerows(zip(*numbers, outside.astype(int).tolist(), each.fit.astype(int).tolist(), strict=True))
-    atomic_write(args.output / "samples.csv", text.getvalue())
+    atomic_write(folder / "samples.csv", text.getvalue())
     title = f"{table.file}: {args.signal} against {args.angle}"
-    draw_calibration(log, found, args.output / "calibration.png", title=title, names=(args.signal, args.angle), simulated=table.simulated)
+    draw_calibration(log, found, folder / "calibration.png", title=title, names=(args.signal, args.angle), simulated=table.simulated)
 
 
 def _calibration(args: argparse.Namespace, table: Table, log: Prepared, found: Calibration) -> SensorCalibration:

@@ -94,9 +94,9 @@ def test_any_log_gives_the_same(log: Callable[..., str], tmp_path: Path, capsys:
     results = []
     path = log()
     write_log(read_log(path).recording, tmp_path / name)
-    for each in (path, tmp_path / name):
-        words = ["calibrate", str(each), "--signal", "U", "--angle", "PIP", "--model", "poly", "--degree", "2", "-o", str(tmp_path / "o")]
-        assert main([*words, "--json"]) == 0
+    for each in (Path(path), tmp_path / name):
+        words = ["calibrate", str(each), "--signal", "U", "--angle", "PIP", "--model", "poly", "--degree", "2"]
+        assert main([*words, "-o", str(tmp_path / f"of_{each.name}"), "--json"]) == 0
         results.append(json.loads(capsys.readouterr().out))
     for key in ("n", "sse", "coefficients", "held_out_rms_deg", "notes"):
         assert results[0][key] == results[1][key]

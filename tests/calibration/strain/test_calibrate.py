@@ -8,7 +8,7 @@ import pytest
 
 from calibration.strain.calibrate import calibrate, rms_on
 from calibration.strain.models import Samples
-from calibration.strain.prepare import Prepared, prepare
+from calibration.strain.prepare import PARTS, Prepared, prepare
 from skinfab.errors import InputError
 from skinfab.readout.table import Table, read_table
 
@@ -69,6 +69,32 @@ def test_marked_trials_are_left_out_whole(log: Callable[..., Samples]) -> None:
     run = log(noise=0.002)
     found = calibrate(ready(run, trial=np.repeat([1.0, 2, 3, 4], 800)))
     assert found.plain.degree == 2
+    # With six trials or more there is a standard error to go by.
+    many = calibrate(ready(log(noise=0.002, cycles=8, seconds=64), trial=np.repeat(np.arange(8.0), 800)))
+    assert many.plain.degree == 2 and many.model.name == "poly"
+
+
+def test_choosing_sees_nothing_of_the_half_held_out(log: Callable[..., Samples]) -> None:
+    run = log(width=4.0, noise=0.002, cycles=12, gait=0.8)
+    later = np.arange(len(run.time)) > len(run.time) // 2 + 100  # beyond the reach of the filter
+    spoilt = Samples(run.time, np.where(later, run.signal + 0.05 * np.sin(7 * run.time), run.signal), run.angle, run.fit)
+    one, other = calibrate(ready(run)), calibrate(ready(spoilt))
+    assert one.model.name == other.model.name and one.plain.degree == other.plain.degree
+    for name, by_degree in one.tried.items():
+        assert by_degree == pytest.approx(other.tried[name], rel=0.02)
+    assert other.scores["poly"].held_out_rms_deg > 1.5 * one.scores["poly"].held_out_rms_deg
+
+
+def test_two_trials_are_cut_for_the_choice(log: Callable[..., Samples]) -> None:
+    ready_ = ready(log(noise=0.002), trial=np.repeat([1.0, 2.0], 1600))
+    folds = ready_.folds
+    assert len(folds) == PARTS
+    counts = [sum(int(run.fit.sum()) for run in held_out) for _, held_out in folds]
+    first = sum(int(run.fit.sum()) for run in ready_.only(ready_.halves[0]))
+    assert sum(counts) == first and max(counts) - min(counts) <= 1
+    for fitted, held_out in folds:
+        assert not any(np.any(a.fit & b.fit) for a, b in zip(fitted, held_out, strict=True))
+    assert calibrate(ready_).plain.degree == 2
 
 
 def test_one_way_only_leaves_branches_out_and_says_so(log: Callable[..., Samples]) -> None:
