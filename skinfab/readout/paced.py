@@ -19,12 +19,14 @@ class PacedFrames:
     Parameters
     ----------
     stream : Stream
-        With a rate, unless `in_time` is false.
+        With a rate, unless `in_time` is false or `due` is given.
     make : callable
         Called by `open`; what it returns is asked for a frame whenever it is time for one. Their host times are replaced by
         the moments at which they were given.
     in_time : bool
         False: as fast as they are read.
+    due : callable, optional
+        When the k-th frame is due, s from the opening on; by the stream's rate where it is left out.
 
     Examples
     --------
@@ -36,11 +38,14 @@ class PacedFrames:
     [0.0, 1.0, 2.0]
     """
 
-    def __init__(self, stream: Stream, make: Callable[[], Iterable[Frame]], *, in_time: bool = True) -> None:
-        if in_time and not stream.rate_hz > 0:
+    def __init__(
+        self, stream: Stream, make: Callable[[], Iterable[Frame]], *, in_time: bool = True, due: Callable[[int], float] | None = None
+    ) -> None:
+        if in_time and due is None and not stream.rate_hz > 0:
             raise InputError(f"stream {stream.name} has no rate, so its frames have no time at which to come; give it one")
         self.stream = stream
         self._make, self._in_time = make, in_time
+        self._due = due or (lambda k: k / stream.rate_hz)
         self._frames: Iterator[Frame] | None = None
         self._newest: Frame | None = None
         self._given = 0
@@ -87,13 +92,13 @@ class PacedFrames:
                 break
         if self._newest is None:
             raise StaleError(f"{self.stream.name} has given no frame yet; open it, and wait for one")
-        age = self._clock.now() - self._newest.host_time
+        age = self._clock.now() - self._came
         if age > max_age:
             raise StaleError(f"the newest frame of {self.stream.name} is {age:.3g} s old, and {max_age:g} s are allowed")
         return self._newest
 
     def _next_at(self) -> float:
-        return self._begun + self._given / self.stream.rate_hz if self._in_time else 0.0
+        return self._begun + self._due(self._given) if self._in_time else 0.0
 
     def _give(self) -> Frame | None:
         assert self._frames is not None
@@ -102,10 +107,13 @@ class PacedFrames:
             self._frames = None
             return None
         # Behind its time (the reader was busy), a frame still came when it was due: its age is what it is.
-        at = self._clock.at(self._next_at()) if self._in_time else self._clock.now()
+        self._came = self._clock.at(self._next_at()) if self._in_time else self._clock.now()
         self._given += 1
-        self._newest = replace(frame, host_time=at)
+        self._newest = self._stamped(frame)
         return self._newest
+
+    def _stamped(self, frame: Frame) -> Frame:
+        return replace(frame, host_time=self._came)
 
     def __iter__(self) -> Iterator[Frame]:
         while (frame := self.read()) is not None:

@@ -3,20 +3,16 @@
 from __future__ import annotations
 
 import math
-import time
-from collections.abc import Iterator
-from dataclasses import replace
-from types import TracebackType
-from typing import Self
 
 import numpy as np
 
 from skinfab.errors import InputError
-from skinfab.readout.frame import Frame, Recording, Stream
-from skinfab.readout.source import Counts, HostClock, StaleError
+from skinfab.readout.frame import Frame, Recording
+from skinfab.readout.paced import PacedFrames
+from skinfab.readout.source import Counts
 
 
-class Replay:
+class Replay(PacedFrames):
     """Frames of a recording, each when it is due.
 
     In time, a frame's host time is the moment at which it was due now, so that whatever asks for its age takes it for live;
@@ -28,6 +24,11 @@ class Replay:
     speed : float, optional
         1: as it was recorded, by the device's time; 2: twice as fast. As fast as frames are read where it is left out.
 
+    Attributes
+    ----------
+    duration_s : float
+        How long it takes at its speed.
+
     Raises
     ------
     InputError
@@ -35,7 +36,7 @@ class Replay:
 
     Examples
     --------
-    >>> from skinfab.readout.frame import Channel
+    >>> from skinfab.readout.frame import Channel, Stream
     >>> made = Recording.of_values(Stream("one", (Channel("U"),), 100.0), np.arange(3.0)[:, None], device_time=np.arange(3) / 100)
     >>> with Replay(made) as source:
     ...     [(frame.host_time, float(frame.values[0])) for frame in source]
@@ -47,18 +48,14 @@ class Replay:
             raise InputError(f"a speed of {speed:g} is none; give 1 for the recorded one, 2 for twice as fast")
         if speed is not None and not np.isfinite(recording.device_time).all():
             raise InputError("some frames have no device time, so there is no pace at which to replay them; replay as fast as possible")
-        self._recording, self._speed = recording, speed
         # Where the device's clock stepped back, frames come at once until it is where it was.
         since = np.maximum.accumulate(recording.device_time - recording.device_time[:1]) if speed else np.zeros(len(recording))
-        self._due = since / (speed or 1.0)
-        self._next = len(recording)  # closed: nothing is to come
-        self._given = 0
-        self._newest: Frame | None = None
-
-    @property
-    def stream(self) -> Stream:
-        """As it was recorded."""
-        return self._recording.stream
+        due = since / (speed or 1.0)
+        super().__init__(
+            recording.stream, lambda: recording, in_time=speed is not None, due=lambda k: float(due[k]) if k < len(due) else 0.0
+        )
+        self._recording = recording
+        self.duration_s = float(due[-1]) if len(due) else 0.0
 
     @property
     def counts(self) -> Counts:
@@ -66,73 +63,5 @@ class Replay:
         steps = np.diff(self._recording.sequence[: self._given])
         return Counts(frames=self._given, lost=int((steps[steps > 1] - 1).sum()))
 
-    @property
-    def duration_s(self) -> float:
-        """How long it takes at its speed."""
-        return float(self._due[-1]) if len(self._due) else 0.0
-
-    def open(self) -> Self:
-        """Begin from the start."""
-        self._next = self._given = 0
-        self._newest = None
-        self._clock = HostClock()
-        self._begun = time.monotonic()
-        self._begun_host = self._clock.now()
-        return self
-
-    def close(self) -> None:
-        """Give no more."""
-        self._next = len(self._recording)
-
-    def read(self, timeout: float | None = None) -> Frame | None:
-        """The next frame once it is due; None where `timeout` seconds are over before, or where there are no more."""
-        if self._next >= len(self._recording):
-            return None
-        early = self._early()
-        if timeout is not None and early > timeout:
-            time.sleep(max(timeout, 0.0))
-            return None
-        if early > 0:
-            time.sleep(early)
-        return self._give()
-
-    def read_latest(self, max_age: float) -> Frame:
-        """The newest frame that is due; those before it are passed over. As fast as possible, simply the next one.
-
-        Raises
-        ------
-        StaleError
-            It was due more than `max_age` seconds ago, or there is none.
-        """
-        while self._next < len(self._recording) and self._early() <= 0:
-            self._give()
-            if self._speed is None:
-                break
-        if self._newest is None:
-            raise StaleError(f"{self.stream.name} has given no frame yet; open it, and wait for one")
-        age = self._clock.now() - self._begun_host - float(self._due[self._given - 1]) if self._speed else 0.0
-        if age > max_age:
-            raise StaleError(f"the newest frame of {self.stream.name} is {age:.3g} s old, and {max_age:g} s are allowed")
-        return self._newest
-
-    def _early(self) -> float:
-        return self._begun + float(self._due[self._next]) - time.monotonic() if self._speed else 0.0
-
-    def _give(self) -> Frame:
-        frame = self._recording.frame(self._next)
-        if self._speed:
-            frame = replace(frame, host_time=self._begun_host + float(self._due[self._next]))
-        self._next += 1
-        self._given += 1
-        self._newest = frame
-        return frame
-
-    def __iter__(self) -> Iterator[Frame]:
-        while (frame := self.read()) is not None:
-            yield frame
-
-    def __enter__(self) -> Self:
-        return self.open()
-
-    def __exit__(self, kind: type[BaseException] | None, fault: BaseException | None, trace: TracebackType | None) -> None:
-        self.close()
+    def _stamped(self, frame: Frame) -> Frame:
+        return super()._stamped(frame) if self._in_time else frame

@@ -9,17 +9,7 @@ from pathlib import Path
 from skinfab.files import atomic_path
 from skinfab.readout.frame import Recording
 from skinfab.readout.logs.mcap_log import BLOCK_BYTES, modern
-from skinfab.readout.logs.message import (
-    FRAME_TOPIC,
-    FRAME_TYPE,
-    STREAM_TOPIC,
-    STREAM_TYPE,
-    Message,
-    frame_messages,
-    log_times,
-    stream_message,
-    typestore,
-)
+from skinfab.readout.logs.message import Message, write_bag
 from skinfab.readout.logs.unpack import Budget, Cursor, DamagedError, unpack
 
 MAGIC = b"#ROSBAG V2.0\n"
@@ -44,13 +34,7 @@ def write_bag1(recording: Recording, path: str | Path) -> None:
         writer.chunk_threshold = BLOCK_BYTES
         writer.open()
         try:
-            store = typestore("ros1")
-            stream = writer.add_connection(STREAM_TOPIC, STREAM_TYPE, typestore=store)
-            frames = writer.add_connection(FRAME_TOPIC, FRAME_TYPE, typestore=store)
-            at = log_times(recording).tolist()
-            writer.write(stream, min(at, default=0), stream_message(recording.stream, "ros1"))
-            for time, data in zip(at, frame_messages(recording, "ros1"), strict=True):
-                writer.write(frames, time, data)
+            write_bag(writer, recording, "ros1")
         finally:
             writer.close()
 

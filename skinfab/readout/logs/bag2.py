@@ -18,17 +18,7 @@ from skinfab.errors import InputError
 from skinfab.files import explain_os_error
 from skinfab.readout.frame import Recording
 from skinfab.readout.logs.mcap_log import mcap_messages
-from skinfab.readout.logs.message import (
-    FRAME_TOPIC,
-    FRAME_TYPE,
-    STREAM_TOPIC,
-    STREAM_TYPE,
-    Message,
-    frame_messages,
-    log_times,
-    stream_message,
-    typestore,
-)
+from skinfab.readout.logs.message import Message, write_bag
 from skinfab.readout.logs.unpack import Budget, DamagedError
 
 SQLITE = b"SQLite format 3\0"
@@ -57,13 +47,7 @@ def write_bag2(recording: Recording, path: str | Path) -> None:
     try:
         partial.parent.mkdir()
         with Writer(partial, version=9, storage_plugin=StoragePlugin.SQLITE3) as writer:
-            store = typestore("cdr")
-            stream = writer.add_connection(STREAM_TOPIC, STREAM_TYPE, typestore=store)
-            frames = writer.add_connection(FRAME_TOPIC, FRAME_TYPE, typestore=store)
-            at = log_times(recording).tolist()
-            writer.write(stream, min(at, default=0), stream_message(recording.stream, "cdr"))
-            for time, data in zip(at, frame_messages(recording, "cdr"), strict=True):
-                writer.write(frames, time, data)
+            write_bag(writer, recording, "cdr")
         partial.rename(path)
     except OSError as fault:
         raise InputError(explain_os_error(fault, path)) from fault

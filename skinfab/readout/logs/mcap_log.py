@@ -10,17 +10,7 @@ from pathlib import Path
 
 from skinfab.files import atomic_path
 from skinfab.readout.frame import Recording
-from skinfab.readout.logs.message import (
-    FRAME_TOPIC,
-    FRAME_TYPE,
-    STREAM_TOPIC,
-    STREAM_TYPE,
-    Message,
-    frame_messages,
-    log_times,
-    stream_message,
-    typestore,
-)
+from skinfab.readout.logs.message import FRAME_TOPIC, TOPICS, Message, log_messages, typestore
 from skinfab.readout.logs.unpack import Budget, Cursor, DamagedError, unpack
 
 MAGIC = b"\x89MCAP0\r\n"
@@ -44,16 +34,13 @@ def write_mcap(recording: Recording, path: str | Path) -> None:
     with atomic_path(path) as partial, partial.open("wb") as file:
         writer = Writer(file, chunk_size=BLOCK_BYTES)
         writer.start(profile="ros2", library="skinfab")
-        at = log_times(recording).tolist()
-        channels = []
-        for topic, kind in ((STREAM_TOPIC, STREAM_TYPE), (FRAME_TOPIC, FRAME_TYPE)):
+        channels = {}
+        for topic, kind in TOPICS.items():
             definition, _ = typestore("cdr").generate_msgdef(kind, ros_version=2)
             schema = writer.register_schema(kind, "ros2msg", definition.encode())
-            channels.append(writer.register_channel(topic, "cdr", schema))
-        begin = min(at, default=0)
-        writer.add_message(channels[0], begin, stream_message(recording.stream, "cdr"), begin)
-        for k, (time, data) in enumerate(zip(at, frame_messages(recording, "cdr"), strict=True)):
-            writer.add_message(channels[1], time, data, time, k)
+            channels[topic] = writer.register_channel(topic, "cdr", schema)
+        for k, (topic, time, data) in enumerate(log_messages(recording, "cdr")):
+            writer.add_message(channels[topic], time, data, time, k - 1 if topic == FRAME_TOPIC else 0)
         writer.finish()
 
 

@@ -6,7 +6,7 @@ type whose definition every such file carries, so that Foxglove, PlotJuggler or 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING
@@ -19,10 +19,13 @@ from skinfab.readout.description import stream_of_json, stream_to_json
 from skinfab.readout.frame import Recording, Stream
 
 if TYPE_CHECKING:
+    from rosbags import rosbag1, rosbag2
     from rosbags.typesys.store import Typestore
 
 STREAM_TOPIC, FRAME_TOPIC = "/skinfab/stream", "/skinfab/frames"
 STREAM_TYPE, FRAME_TYPE = "std_msgs/msg/String", "skinfab_msgs/msg/Frame"
+#: In the order in which they are written: the stream is described first.
+TOPICS = {STREAM_TOPIC: STREAM_TYPE, FRAME_TOPIC: FRAME_TYPE}
 
 #: The type's definition: `skinfab.readout.frame.Frame`, with one byte, 0 or 1, for what is true or not.
 FRAME_DEFINITION = """\
@@ -111,6 +114,22 @@ def log_times(recording: Recording) -> NDArray[np.int64]:
     """When each frame reached the computer, in whole ns from 1970 on, as bags want it; the frames hold the exact time."""
     seconds = np.nan_to_num(recording.host_time, nan=0.0, posinf=0.0, neginf=0.0)
     return np.round(np.clip(seconds, 0, 2**32 - 1) * 1e9).astype(np.int64)
+
+
+def log_messages(recording: Recording, coding: str) -> Iterator[tuple[str, int, bytes]]:
+    """All of a recording's messages: topic, time (ns) and bytes."""
+    at = log_times(recording).tolist()
+    yield STREAM_TOPIC, min(at, default=0), stream_message(recording.stream, coding)
+    for time, data in zip(at, frame_messages(recording, coding), strict=True):
+        yield FRAME_TOPIC, time, data
+
+
+def write_bag(writer: rosbag1.Writer | rosbag2.Writer, recording: Recording, coding: str) -> None:
+    """Write a recording into a bag that is open."""
+    store = typestore(coding)
+    connections = {topic: writer.add_connection(topic, kind, typestore=store) for topic, kind in TOPICS.items()}
+    for topic, time, data in log_messages(recording, coding):
+        writer.write(connections[topic], time, data)
 
 
 def stream_message(stream: Stream, coding: str) -> bytes:
