@@ -1,0 +1,58 @@
+"""Undo, redo, and what is done to the selected sensor."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+from gui.actions import Action
+from gui.desk import Desk
+from gui.state.selection import NOTHING
+from skinfab.placement import edit
+
+
+class EditCommands:
+    """The Edit menu."""
+
+    def __init__(self, desk: Desk) -> None:
+        self._desk = desk
+
+    def actions(self) -> list[Action]:
+        """For the table."""
+        session = self._desk.session
+        return [
+            Action(
+                "undo", "Undo", "Edit", self.undo, "Control-z", lambda: session.undo_label is not None, "Take the last step back.", True
+            ),
+            Action("redo", "Redo", "Edit", self.redo, "Control-y", lambda: session.redo_label is not None, "Do it again after all.", True),
+            Action("delete", "Delete the sensor", "Edit", self.delete, "Delete", self._one_selected),
+            Action("turn_left", "Turn by 15°", "Edit", lambda: self.turn(15), "Control-r", self._one_selected),
+            Action("turn_right", "Turn back by 15°", "Edit", lambda: self.turn(-15), "Control-Shift-R", self._one_selected),
+            Action("select_none", "Select nothing", "Edit", lambda: session.select(NOTHING), "Control-Shift-A"),
+        ]
+
+    def undo(self) -> None:
+        """Take the last step back, and say which it was."""
+        label = self._desk.session.undo()
+        if label is not None:
+            self._desk.say(f"Undone: {label}.")
+
+    def redo(self) -> None:
+        """Do the last undone step again, and say which it was."""
+        label = self._desk.session.redo()
+        if label is not None:
+            self._desk.say(f"Done again: {label}.")
+
+    def delete(self) -> None:
+        """Take the selected sensor off."""
+        skin, id = self._desk.skin, self._desk.session.selected.sensor
+        self._desk.session.do(f"delete {id}", replace(skin, sensors=edit.remove(skin.sensors, id)))
+
+    def turn(self, degrees: float) -> None:
+        """Turn the selected sensor about its middle."""
+        skin, id = self._desk.skin, self._desk.session.selected.sensor
+        sensors = edit.rotate(skin.sensors, id, angle=math.radians(degrees))
+        self._desk.session.do(f"turn {id}", replace(skin, sensors=sensors))
+
+    def _one_selected(self) -> bool:
+        return self._desk.session.skin is not None and bool(self._desk.session.selected.sensor)

@@ -1,0 +1,78 @@
+"""What a mesh file holds, before it is taken: its faults, its unit, what repair would change."""
+
+from __future__ import annotations
+
+import tkinter as tk
+from dataclasses import dataclass
+from tkinter import ttk
+
+from gui.dialogs.question import make_modal
+from gui.jobs.tasks import MeshFacts
+from skinfab.mesh.units import MM_PER_UNIT
+
+
+@dataclass(frozen=True)
+class MeshChoice:
+    """How a mesh file is to be read.
+
+    Parameters
+    ----------
+    units : "mm", "cm", "m" or "in"
+    repair : bool
+        Mend faults that change the surface.
+    """
+
+    units: str
+    repair: bool
+
+
+def ask_how_to_open(master: tk.Misc, facts: MeshFacts) -> MeshChoice | None:
+    """Show what was found and ask; None where the file is not to be opened."""
+    return _OpenMesh(master, facts).choice
+
+
+class _OpenMesh(tk.Toplevel):
+    def __init__(self, master: tk.Misc, facts: MeshFacts) -> None:
+        super().__init__(master, name="open_mesh", background=ttk.Style(master).lookup(".", "background"))
+        self.title(f"Open {facts.file}")
+        self.resizable(False, False)
+        self.choice: MeshChoice | None = None
+        self._units = tk.StringVar(self, value=facts.units)
+        self._repair = tk.BooleanVar(self, value=not facts.usable and bool(facts.repair_does))
+        body = ttk.Frame(self, padding=16, name="body")
+        body.pack(fill="both", expand=True)
+        ttk.Label(body, text=facts.headline, style="Title.TLabel", wraplength=520).pack(anchor="w")
+        self._ask_units(body, facts)
+        self._list(body, "What was found", facts.found)
+        self._list(body, "Always done", facts.cleaning_does)
+        if facts.repair_does:
+            ttk.Checkbutton(body, text="Repair it:", variable=self._repair, name="repair").pack(anchor="w", pady=(8, 0))
+            self._list(body, "", facts.repair_does)
+        buttons = ttk.Frame(body, name="buttons")
+        buttons.pack(anchor="e", pady=(14, 0))
+        ttk.Button(buttons, text="Open", command=self._take, default="active", name="open").pack(side="left", padx=6)
+        ttk.Button(buttons, text="Cancel", command=self.destroy, name="cancel").pack(side="left")
+        self.bind("<Return>", lambda event: self._take())
+        self.bind("<Escape>", lambda event: self.destroy())
+        self.after_idle(buttons.nametowidget("open").focus_set)
+        make_modal(self, master)
+
+    def _ask_units(self, body: ttk.Frame, facts: MeshFacts) -> None:
+        ttk.Label(body, text=facts.unit_reason, wraplength=520, style="TLabel" if facts.unit_sure else "Warning.TLabel").pack(
+            anchor="w", pady=(8, 2)
+        )
+        row = ttk.Frame(body, name="units")
+        row.pack(anchor="w")
+        for units, factor in MM_PER_UNIT.items():
+            text = f"{units}: {facts.extent * factor:.4g} mm long"
+            ttk.Radiobutton(row, text=text, value=units, variable=self._units, name=units).pack(side="left", padx=(0, 10))
+
+    def _list(self, body: ttk.Frame, heading: str, lines: tuple[str, ...]) -> None:
+        if lines:
+            shown = [*lines[:8], *([f"and {len(lines) - 8} more"] if len(lines) > 8 else [])]
+            text = "\n".join([*([heading + ":"] if heading else []), *(f"  • {line}" for line in shown)])
+            ttk.Label(body, text=text, wraplength=520, justify="left").pack(anchor="w", pady=(6, 0))
+
+    def _take(self) -> None:
+        self.choice = MeshChoice(self._units.get(), self._repair.get())
+        self.destroy()

@@ -1,0 +1,107 @@
+"""What the worker process does: each function reads or computes with the library and gives back one value."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from skinfab.document import load_skin
+from skinfab.mesh.door import load_usable
+from skinfab.mesh.inspect import inspect
+from skinfab.mesh.io import load_mesh
+from skinfab.mesh.repair import clean, repair
+from skinfab.mesh.units import guess_units
+from skinfab.progress import Progress
+from skinfab.skin import Skin, Source
+
+
+@dataclass(frozen=True)
+class MeshFacts:
+    """What a mesh file holds.
+
+    Parameters
+    ----------
+    file : str
+        Its name.
+    headline : str
+        Triangles, size, closed or open.
+    extent : float
+        Largest extent, file units.
+    units, unit_reason : str
+        The unit it seems to be in, and why.
+    unit_sure : bool
+    found, cleaning_does, repair_does : tuple of str
+        Faults; what reading mends in any case; what repair would change.
+    usable : bool
+        Without repair.
+    """
+
+    file: str
+    headline: str
+    extent: float
+    units: str
+    unit_reason: str
+    unit_sure: bool
+    found: tuple[str, ...]
+    cleaning_does: tuple[str, ...]
+    repair_does: tuple[str, ...]
+    usable: bool
+
+
+@dataclass(frozen=True, eq=False)
+class Opened:
+    """A document and what there is to say about reading it."""
+
+    skin: Skin
+    notes: tuple[str, ...]
+
+
+def look_at_mesh(*, path: Path, progress: Progress) -> MeshFacts:
+    """Read a mesh file and say what is in it."""
+    progress(0.1, f"reading {path.name}")
+    loaded = load_mesh(path, units="mm")
+    progress(0.4, "inspecting")
+    found = inspect(loaded.mesh.V, loaded.mesh.F)
+    cleaned, does = clean(loaded.mesh)
+    after = inspect(cleaned.V, cleaned.F) if does else found
+    progress(0.8, "trying repair")
+    would_do = repair(cleaned)[1] if after.open_edges or not after.usable else []
+    extent = float(max(found.size_mm))
+    guess = guess_units(extent)
+    shape = "closed" if found.closed else f"with {found.boundary_loops} open border{'' if found.boundary_loops == 1 else 's'}"
+    parts = "" if found.components == 1 else f" in {found.components} parts"
+    return MeshFacts(
+        file=path.name,
+        headline=f"{path.name}: {found.faces} triangles{parts}, {shape}",
+        extent=extent,
+        units=guess.units,
+        unit_reason=guess.reason.split("; set --units")[0],
+        unit_sure=guess.sure,
+        found=tuple(fault.sentence for fault in found.faults),
+        cleaning_does=tuple(does),
+        repair_does=tuple(would_do),
+        usable=after.usable,
+    )
+
+
+def open_mesh(*, path: Path, units: str, mend: bool, printer: str, material: str, progress: Progress) -> Opened:
+    """A document of a mesh that is not cut yet."""
+    progress(0.1, f"reading {path.name}")
+    loaded = load_usable(path, units=units, mend=mend)
+    skin = Skin(
+        mesh=loaded.mesh,
+        source=Source(loaded.file, loaded.sha256, loaded.units, loaded.scale),
+        seams=np.zeros((0, 2), dtype=np.int64),
+        pieces=(),
+        printer=printer,
+        material=material,
+    )
+    return Opened(skin, loaded.notes)
+
+
+def open_skin(*, path: Path, progress: Progress) -> Opened:
+    """A document as it lies there."""
+    progress(0.1, f"reading {path.name}")
+    return Opened(load_skin(path), ())
