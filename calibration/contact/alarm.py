@@ -77,7 +77,7 @@ def alarm_for(per_minute: float, *, channels: int, rate_hz: float, still_frames:
         most = math.exp(_log_rate(low, still_frames)) * channels * 60 * rate_hz
         raise InputError(
             f"{per_minute:g} false alarms a minute cannot be promised for {channels} channels at {rate_hz:g} Hz; "
-            f"give fewer than {most:.0f}, and not next to none"
+            f"give fewer than {most:.2g}, and not next to none"
         )
     from scipy.optimize import brentq
 

@@ -276,7 +276,7 @@ class ContactDetector:
         state["before_that"], state["before"], state["seen"] = window[-2], window[-1], self._time
         wait = patience(window, found, rate_hz=self.stream.rate_hz)
         state["within"], state["patience"] = wait.within, wait.frames
-        state["one"], state["one_since"], state["one_frames"] = window[-1], self._time, 1
+        state["one"], state["one_since"], state["one_frames"], state["one_baseline"] = window[-1], self._time, 1, found.level
         self._ready[j] = self._time
 
     def _contact(self, j: int, *, ended: bool) -> Contact:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from calibration.contact.clock import on_one_clock
+from calibration.contact.clock import longest_hole, on_one_clock, rate_of
 from calibration.contact.detector import Contact, Detection
 from calibration.contact.table import normalised, unwatched
 from skinfab.files import atomic_write
@@ -70,7 +70,9 @@ def _draw(axes: Axes, panel: Panel) -> None:
     time, _ = on_one_clock(panel.recording)
     begin, end = float(np.nanmin(time)), float(np.nanmax(time))
     step = max(len(time) // _POINTS, 1)
-    levels = normalised(panel.recording, panel.found)
+    drawn, levels = time[::step] - begin, normalised(panel.recording, panel.found)[::step]
+    rate = rate_of(panel.recording)
+    levels[:-1][np.diff(drawn) > longest_hole(rate) + step / rate] = np.nan  # no line across a hole
     names = [health.channel for health in panel.found.channels]
     for k, name in enumerate(names):
         base = len(names) - 1 - k
@@ -81,7 +83,7 @@ def _draw(axes: Axes, panel: Panel) -> None:
             axes.fill_between(
                 [each.start - begin, last - begin], base, base + 0.92, color=RISE if each.sign > 0 else FALL, alpha=0.6, linewidth=0
             )
-        axes.plot(time[::step] - begin, base + 0.85 * levels[::step, k], color=LINE, linewidth=0.5)
+        axes.plot(drawn, base + 0.85 * levels[:, k], color=LINE, linewidth=0.5)
         for each in (each for each in panel.truth if each.channel == name):
             axes.plot([each.start - begin, each.end - begin], [base - 0.03] * 2, color=TRUE, linewidth=1.2, solid_capstyle="butt")
     labels = [f"{health.channel}\n({health.state})" if health.state else health.channel for health in panel.found.channels]

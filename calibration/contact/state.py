@@ -30,7 +30,7 @@ SHIFT = 2 * ALLOWANCE
 SETTLE_S = 0.3
 #: Changes under contact are smoothed by this, s.
 SMOOTH_S = 0.05
-#: A frozen channel reads again once so many frames in a row are unlike what it had frozen at.
+#: A frozen channel reads again once so many frames in a row are unlike what it had frozen at, and it had time to settle.
 THAW_FRAMES = 3
 #: Time constant of the baseline at rest, s.
 BASELINE_S = 0.5
@@ -71,7 +71,11 @@ class ChannelState(Protocol):
     one: float  # the reading that it stays at, since when, and for how many frames
     one_since: float
     one_frames: float
-    unlike: int  # frames in a row that differ from where it had frozen
+    one_baseline: float  # what was known when it came there
+    one_rise: float
+    one_fall: float
+    unlike: int  # frames in a row that differ from where it had frozen, and since when
+    unlike_since: float
     watched: float  # frames in which a contact could be seen
 
 
@@ -151,15 +155,18 @@ def _step(
         return _learn(s, window, now, x, saturated, hole)
     if saturated and s.phase != CONTACT:
         return NOTHING  # an open wire reads the same: it starts nothing
+    if now - s.seen > hole:  # what had begun to sum up says nothing of now
+        s.up = s.down = 0.0
     s.seen = now
     if saturated:  # how far it goes is not known, nor whether the wire is open: what there is goes on
         s.saturated = True
         return NOTHING
     if abs(x - s.one) > s.within:
         s.one, s.one_since, s.one_frames = x, now, 0.0
+        s.one_baseline, s.one_rise, s.one_fall = s.baseline, s.rise, s.fall
     s.one_frames += 1.0
     if s.phase == FROZEN:
-        return _thaw(s, x)
+        return _thaw(s, now, x)
     s.watched += 1.0
     if s.one_frames > s.patience:
         return _freeze(s)
@@ -204,6 +211,7 @@ def _freeze(s: ChannelState) -> int:
     if s.cut:
         s.end, s.dropped = s.start if s.alarmed > s.one_since else s.one_since, True
     s.watched -= s.one_frames
+    s.baseline, s.rise, s.fall = s.one_baseline, s.one_rise, s.one_fall
     s.unlike = 0
     _rest(s)
     s.phase = FROZEN
@@ -211,9 +219,11 @@ def _freeze(s: ChannelState) -> int:
 
 
 @njit(cache=True)
-def _thaw(s: ChannelState, x: float) -> int:
+def _thaw(s: ChannelState, now: float, x: float) -> int:
     s.unlike = s.unlike + 1 if abs(x - s.before) > s.within else 0
-    if s.unlike < THAW_FRAMES:
+    if s.unlike <= 1:
+        s.unlike_since = now
+    if s.unlike < THAW_FRAMES or now - s.unlike_since < SETTLE_S:
         return NOTHING
     s.before_that = s.before = x
     _rest(s)

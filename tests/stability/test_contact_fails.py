@@ -84,3 +84,21 @@ def test_creep_after_a_strong_contact_is_many_times_the_noise() -> None:
     found = detect(trial.recording)
     assert len(found.of("S3")) == sum(each.channel == "S3" for each in trial.truth)
     assert {each.sign for each in found.of("S3")} == {1}
+
+
+def test_a_channel_that_is_stuck_is_a_contact_that_never_ends() -> None:
+    log = skin(touch(20, 22, 0.2))
+    log.values[4000:, 0] = 500.0
+    assert fixed_threshold(log)[-1].lasting and any(abs(each.start - 40) < 0.1 for each in high_pass(log))
+    found = detect(log)
+    (only,) = found.contacts
+    assert (only.start, only.end) == pytest.approx((20, 22), abs=0.2) and "S1 froze at 40" in found.faults[0]
+
+
+def test_a_hole_in_the_time_is_a_contact_for_who_does_not_look() -> None:
+    log = skin(touch(20, 90, 0.2))
+    log.device_time[3000:] += 100
+    (spanned,) = fixed_threshold(log)
+    assert spanned.start < 31 and spanned.end > 130  # what was in between nobody knows
+    found = detect(log)
+    assert [(each.start, each.end) for each in found.contacts] == [pytest.approx((20, 30), abs=0.1), pytest.approx((130, 190), abs=0.2)]

@@ -190,3 +190,70 @@ def test_what_creeps_back_while_nothing_is_read_is_no_contact() -> None:
     left = np.where(TIME > 8, 0.08 * np.exp(-(TIME - 8) / 1.0), 0.0)
     left[(TIME > 8.6) & (TIME < 10.5)] = np.nan
     assert spans(detect(skin(touch(5, 8, 0.6) + left))) == near((5.0, 8.0, 1))
+
+
+def without(recording: Recording, start: float, end: float) -> Recording:
+    """The recording, with a hole in its time."""
+    stays = (recording.device_time < start) | (recording.device_time >= end)
+    kept = (getattr(recording, name)[stays] for name in ("device_time", "host_time", "sequence", "values", "valid", "saturated"))
+    return Recording(recording.stream, *kept)
+
+
+def test_a_contact_ends_at_a_hole_in_the_time() -> None:
+    found = detect(without(skin(touch(5, 15), touch(5, 8)), 7, 12))
+    assert spans(found) == near((5.0, 7.0, 1), (12.0, 15.0, 1)) and spans(found, "S2") == near((5.0, 7.0, 1))
+    assert [each.dropped for each in found.contacts] == [True, True, False]
+    assert "2 contacts were cut short" in found.faults[-1]
+    bridged = detect(without(skin(touch(5, 15)), 7, 7.9))
+    assert spans(bridged) == near((5.0, 15.0, 1)) and bridged.faults == ()
+
+
+def test_no_contact_begins_in_a_hole() -> None:
+    # What summed up before the hole and what is seen after it are not one beginning.
+    found = detect(without(skin(touch(11.97, 20)), 12, 18))
+    assert spans(found) == near((18.0, 20.0, 1))
+
+
+def test_a_slow_stream_keeps_its_contacts() -> None:
+    plain = skin(touch(5, 8))
+    slow = replace(plain, stream=replace(plain.stream, rate_hz=5.0), device_time=20 * plain.device_time)
+    # Six frames that are missing are more than a second, and no hole.
+    (only,) = detect(without(slow, 120, 121.3), false_alarms=0.01).contacts
+    assert (only.start, only.end, only.dropped) == (pytest.approx(100, abs=1), pytest.approx(160, abs=2), False)
+
+
+def test_a_device_that_begins_anew_ends_its_contacts_and_is_watched_on() -> None:
+    plain = skin(touch(5, 14) + touch(20, 22))
+    time = plain.device_time.copy()
+    time[1000:] -= time[1000]
+    log = replace(plain, device_time=time)
+    found = detect(log)
+    assert spans(found) == near((5.0, 10.0, 1), (11.0, 14.0, 1), (20.0, 22.0, 1)) and found.contacts[0].dropped
+    assert "the clock is set back before frame 1,101" in found.faults[0]
+    watch = ContactDetector(log.stream)
+    for frame in log:
+        watch.step(frame)
+    assert watch.found().contacts == found.contacts and watch.found().set_back == found.set_back
+    assert watch.now == pytest.approx(29.99)
+
+
+def test_rest_is_found_soon_after_the_last_touch_and_late_is_said() -> None:
+    busy = sum(touch(at, at + 1.0) for at in np.arange(0.5, 12, 2.0))
+    found = detect(skin(busy + touch(20, 22), touch(20, 22)))
+    late, soon = found.channels
+    assert late.ready == pytest.approx(11.5 + 3, abs=0.5) and late.late == pytest.approx(late.ready - 3, abs=0.02)
+    assert "S1 was not at rest at first and is watched from 14" in late.faults[0] and soon.faults == () and soon.late < 0.02
+    assert spans(found) == near((20.0, 22.0, 1))
+
+
+def test_a_rest_is_gathered_on_one_side_of_a_hole() -> None:
+    found = detect(without(skin(touch(20, 22)), 2, 10))
+    assert found.channels[0].ready == pytest.approx(13, abs=0.05) and found.channels[0].late == pytest.approx(10, abs=0.1)
+
+
+def test_what_waits_and_what_is_frozen_is_known_at_any_time() -> None:
+    log = skin(np.zeros(3000), touch(1, 2))
+    log.values[1000:, 0] = 100.0
+    watch = ContactDetector(log.stream)
+    seen = {frame.device_time: (watch.step(frame), watch.waiting, watch.frozen)[1:] for frame in log}
+    assert seen[2.0] == (("S1", "S2"), ()) and seen[4.0] == (("S2",), ()) and seen[6.0] == ((), ()) and seen[12.0] == ((), ("S1",))

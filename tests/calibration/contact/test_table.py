@@ -8,7 +8,7 @@ import pytest
 from calibration.contact.detector import detect
 from calibration.contact.objects import OBJECTS, pads
 from calibration.contact.simulator import Scene, simulate
-from calibration.contact.table import contact_table, normalised
+from calibration.contact.table import contact_table, normalised, unwatched
 from skinfab.errors import InputError
 from skinfab.readout.frame import Channel, Recording, Stream
 
@@ -57,3 +57,29 @@ def test_trials_of_two_objects_are_no_table() -> None:
     logs = [simulate(name).recording for name in ("cube", "cup")]
     with pytest.raises(InputError, match="cube has S1, S2, S3, S4, S5, S6 and cup has S1, S2, S3, S4"):
         contact_table([(each, detect(each)) for each in logs])
+
+
+def test_a_channel_that_froze_is_in_the_table_and_not_in_the_picture() -> None:
+    k = np.arange(1500)
+    frozen = made(np.where((k > 500) & (k < 800), 3.0, 2.0), np.full(1500, 2.0))
+    frozen.values[1000:, 0] = 2.0
+    found = detect(frozen)
+    well = made(np.where((k > 500) & (k < 800), 3.0, 2.0), np.full(1500, 2.0))
+    first, second = contact_table([(frozen, found), (well, detect(well))])
+    assert (first.state, second.state) == ("frozen in 1 of 2", "") and (first.contacts, first.trials) == (2, 2)
+    assert (first.watched, second.watched) == (pytest.approx((0.467 + 0.8) / 2, abs=0.01), pytest.approx(0.8, abs=0.01))
+    levels = normalised(frozen, found)
+    assert np.isnan(levels[1005:, 0]).all() and np.isfinite(levels[:1000, 0]).all() and np.isfinite(levels[:, 1]).all()
+    start, rest = unwatched(frozen, found, "S1")
+    assert start == (0.0, pytest.approx(2.99)) and rest == (pytest.approx(10, abs=0.05), pytest.approx(14.99))
+    assert unwatched(frozen, found, "S2") == [start]
+
+
+def test_a_channel_of_no_use_is_never_watched_and_holes_are_not_either() -> None:
+    k = np.arange(1500)
+    log = made(np.full(1500, 2.0), np.full(1500, 2.0))
+    log.values[:, 0] = 7.0
+    log.device_time[k >= 800] += 5
+    found = detect(log)
+    assert unwatched(log, found, "S1") == [(0.0, pytest.approx(19.99))]
+    assert unwatched(log, found, "S2") == [(0.0, pytest.approx(2.99)), (pytest.approx(7.99), pytest.approx(13.0))]
