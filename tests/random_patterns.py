@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import fields
+from functools import cache, partial
+from operator import mul
 from typing import Any
 
 from hypothesis import strategies as st
@@ -10,29 +12,28 @@ from hypothesis import strategies as st
 from skinfab.patterns.base import Pattern, PatternError
 from skinfab.patterns.registry import PATTERNS, make_pattern
 
+#: What every pattern has.
+_COMMON = {"bead": st.floats(0.2, 1.6), "gap": st.floats(0.0, 1.2), "pad": st.just(0) | st.floats(0.5, 6)}
+
 #: More steps of advice than this, and it goes round in circles.
 _STEPS = 12
 
 
-@st.composite
-def parameter_sets(draw: st.DrawFn, kind: str) -> dict[str, Any]:
+@cache
+def parameter_sets(kind: str) -> st.SearchStrategy[dict[str, Any]]:
     """Around the pattern's example, far enough out to break every bound."""
     cls = PATTERNS[kind]
-    params: dict[str, Any] = {
-        "bead": draw(st.floats(0.2, 1.6)),
-        "gap": draw(st.floats(0.0, 1.2)),
-        "pad": draw(st.just(0) | st.floats(0.5, 6)),
-    }
+    own: dict[str, st.SearchStrategy[Any]] = {}
     for field in fields(cls):
-        if field.name in params:
+        if field.name in _COMMON:
             continue
         if field.type == "bool":
-            params[field.name] = draw(st.booleans())
+            own[field.name] = st.booleans()
         elif field.type == "int":
-            params[field.name] = draw(st.integers(-2, 14))
+            own[field.name] = st.integers(-2, 14)
         else:
-            params[field.name] = draw(st.floats(0.02, 5)) * cls.example.get(field.name, field.default)
-    return params
+            own[field.name] = st.floats(0.02, 5).map(partial(mul, cls.example.get(field.name, field.default)))
+    return st.fixed_dictionaries(_COMMON | own)
 
 
 def mended(kind: str, params: dict[str, Any]) -> Pattern:
@@ -58,6 +59,7 @@ def fault_of(kind: str, params: dict[str, Any]) -> PatternError | None:
     return None
 
 
+@cache
 def patterns(kind: str) -> st.SearchStrategy[Pattern]:
     """Valid patterns, many of them right on a bound."""
     return parameter_sets(kind).map(lambda params: mended(kind, params))

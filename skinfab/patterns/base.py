@@ -10,6 +10,7 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import MISSING, dataclass, fields
+from functools import cache
 from numbers import Real
 from typing import Any, ClassVar, TypeAlias
 
@@ -80,12 +81,12 @@ class Pattern(ABC):
     pad: float = 3.0
 
     def __post_init__(self) -> None:
-        for field in fields(self):
-            value = self.read(field.name, getattr(self, field.name))
-            object.__setattr__(self, field.name, value)
+        for name, kind in _types(type(self)).items():
+            value = self.read(name, getattr(self, name))
+            object.__setattr__(self, name, value)
             # Counts are bounded by the lengths, in the pattern's own words.
-            if field.type == "float":
-                self._at_most(field.name, LARGEST_PATTERN_MM, "no bed is larger")
+            if kind == "float":
+                self._at_most(name, LARGEST_PATTERN_MM, "no bed is larger")
         self._at_least("bead", LEAST_BEAD_MM, "no nozzle is finer")
         self._at_least("gap", 0.0, "a distance cannot be negative")
         if self.pad:
@@ -100,7 +101,7 @@ class Pattern(ABC):
         InputError
             It is something else.
         """
-        kind = next(field.type for field in fields(cls) if field.name == name)
+        kind = _types(cls)[name]
         if kind == "bool":
             if not isinstance(value, bool):
                 raise InputError(f"{cls.kind}: {name} is {value!r}; it must be true or false")
@@ -179,6 +180,12 @@ class Pattern(ABC):
         if not value <= bound + PARAMETER_ROUNDING_MM:
             nearest = _on_step(bound, up=False)
             raise PatternError(self.kind, name, value, f"it must be at most {_shown(nearest)} ({why})", nearest)
+
+
+@cache
+def _types(cls: type[Pattern]) -> dict[str, Any]:
+    """The types of a pattern's parameters by name, as written: looked up once a class, for a search makes thousands of patterns."""
+    return {field.name: field.type for field in fields(cls)}
 
 
 def _on_step(bound: float, *, up: bool) -> float:

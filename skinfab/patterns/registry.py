@@ -69,9 +69,10 @@ def make_pattern(kind: str, params: Mapping[str, Any]) -> Pattern:
         if name not in known:
             raise InputError(f"{kind}: unknown parameter {name!r}{_suggest(name, known)}; it knows {', '.join(sorted(known))}")
     cls = PATTERNS[kind]
-    missing = [name for name in cls.required() if name not in params]
+    required = cls.required()
+    missing = [name for name in required if name not in params]
     if missing:
-        raise InputError(f"{kind}: parameter {missing[0]!r} is missing; it needs {', '.join(cls.required())}")
+        raise InputError(f"{kind}: parameter {missing[0]!r} is missing; it needs {', '.join(required)}")
     defaults = {name: f.default for name, f in known.items() if f.default is not MISSING}
     given = defaults | {name: cls.read(name, value) for name, value in params.items()}
     return cls(**cls.usual(given) | dict(params))
