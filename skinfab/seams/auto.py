@@ -20,6 +20,7 @@ from skinfab.seams.cut import seam_length
 from skinfab.seams.glue import glue_pieces
 from skinfab.seams.judge import Limits
 from skinfab.seams.refine import Judged, refine_seams
+from skinfab.seams.rules import EdgeRules, coarse_rules
 from skinfab.seams.weights import seam_weights
 
 BoolArray = NDArray[np.bool_]
@@ -62,7 +63,14 @@ class Seams:
     pieces: list[Judged]
 
 
-def find_seams(mesh: Mesh, limits: Limits, *, neck: float = 4.0, progress: Callable[[float], None] | None = None) -> Seams:
+def find_seams(
+    mesh: Mesh,
+    limits: Limits,
+    *,
+    neck: float = 4.0,
+    rules: EdgeRules | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> Seams:
     """Seams that part `mesh` into disks within `limits`, without flips or overlap.
 
     Parameters
@@ -72,6 +80,8 @@ def find_seams(mesh: Mesh, limits: Limits, *, neck: float = 4.0, progress: Calla
     limits : Limits
     neck : float, mm
         Pieces are not joined across less than this.
+    rules : EdgeRules, optional
+        Seams to keep, edges never to cut, and what others cost.
     progress : callable, optional
         Called with the part that is done, 0 to 1.
 
@@ -83,27 +93,45 @@ def find_seams(mesh: Mesh, limits: Limits, *, neck: float = 4.0, progress: Calla
     aim = replace(limits, mean=4 + _AIM * (limits.mean - 4))
     small = coarsen(mesh, _COARSE_FACES)
     report = progress or (lambda done: None)
-    search_share = 1.0 if small is mesh else 0.5
-    seams = _search(small, aim, limits, neck, lambda done: report(search_share * done))
     if small is mesh:
-        return seams
-    cut = transfer(small, seams.cut, mesh)
-    _, label = mesh.topology.face_components(cut)
+        return _search(mesh, aim, limits, neck, rules, report)
+    locked = None if rules is None else transfer(mesh, rules.locked, small)
+    small_rules = None if rules is None or locked is None else coarse_rules(mesh, rules, small, locked)
+    seams = _search(small, aim, limits, neck, small_rules, lambda done: report(0.5 * done))
+    cut = _on_fine(mesh, small, seams.cut, rules, locked)
+    fine = {"tolerance": _SEARCH_DECREASE}
+    weight, forbidden = (seam_weights(mesh), None) if rules is None else (rules.weights(mesh), rules.forbidden)
+    cut, pieces = refine_seams(mesh, cut, limits, weight, forbidden=forbidden, progress=lambda done: report(0.5 + 0.4 * done), **fine)
+    stay = None if rules is None else rules.locked
+    return Seams(*glue_pieces(mesh, cut, pieces, limits, neck=neck, excess=np.inf, smaller_than=_SMALL * mesh.area, locked=stay, **fine))
+
+
+def _on_fine(mesh: Mesh, small: Mesh, cut: BoolArray, rules: EdgeRules | None, locked: BoolArray | None) -> BoolArray:
+    """The seams found on a small mesh on the fine one, without the scraps between them."""
+    if rules is None or locked is None:
+        fine = transfer(small, cut, mesh)
+    else:
+        # Locked seams are known exactly; those found beside them have to end on them.
+        pinned = np.unique(small.topology.E[locked]), np.unique(mesh.topology.E[rules.locked])
+        fine = transfer(small, cut & ~locked, mesh, weight=rules.weights(mesh), pinned=pinned)
+        fine = (fine & ~rules.forbidden) | rules.locked
+    _, label = mesh.topology.face_components(fine)
     merged = merge_small(mesh, label, _SCRAP * mesh.area)
     # Within a piece the seams that part nothing (darts) stay; between pieces only the borders do.
     EF = mesh.topology.EF
     inside = (EF[:, 1] >= 0) & (label[EF[:, 0]] == label[EF[:, 1]])
-    cut = (cut & inside) | borders(mesh, merged)
-    fine = {"tolerance": _SEARCH_DECREASE}
-    cut, pieces = refine_seams(mesh, cut, limits, seam_weights(mesh), progress=lambda done: report(0.5 + 0.4 * done), **fine)
-    return Seams(*glue_pieces(mesh, cut, pieces, limits, neck=neck, excess=np.inf, smaller_than=_SMALL * mesh.area, **fine))
+    fine = (fine & inside) | borders(mesh, merged)
+    return fine if rules is None else fine | rules.locked
 
 
-def _search(mesh: Mesh, aim: Limits, limits: Limits, neck: float, progress: Callable[[float], None]) -> Seams:
-    weight = seam_weights(mesh)
-    creases = crease_seams(mesh)
-    starts = [creases] if creases.any() else []
-    starts.append(np.zeros(len(mesh.topology.E), dtype=bool))
+def _search(mesh: Mesh, aim: Limits, limits: Limits, neck: float, rules: EdgeRules | None, progress: Callable[[float], None]) -> Seams:
+    if rules is None:
+        weight, locked, forbidden = seam_weights(mesh), np.zeros(len(mesh.topology.E), dtype=bool), None
+    else:
+        weight, locked, forbidden = rules.weights(mesh), rules.locked, rules.forbidden
+    creases = crease_seams(mesh, forbidden=forbidden)
+    starts = [creases | locked] if creases.any() else []
+    starts.append(locked)
     found: list[Seams] = []
     for k, start in enumerate(starts):
         begun = k / len(starts)
@@ -111,11 +139,11 @@ def _search(mesh: Mesh, aim: Limits, limits: Limits, neck: float, progress: Call
         def report(done: float, begun: float = begun) -> None:
             progress(begun + 0.8 * done / len(starts))
 
-        cut, pieces = refine_seams(mesh, start, aim, weight, tolerance=_SEARCH_DECREASE, progress=report)
-        cut, pieces = glue_pieces(mesh, cut, pieces, aim, neck=neck, excess=_GLUE_EXCESS * (limits.mean - 4), tolerance=_SEARCH_DECREASE)
-        found.append(Seams(cut, pieces))
+        cut, pieces = refine_seams(mesh, start, aim, weight, tolerance=_SEARCH_DECREASE, forbidden=forbidden, progress=report)
+        excess = _GLUE_EXCESS * (limits.mean - 4)
+        found.append(Seams(*glue_pieces(mesh, cut, pieces, aim, neck=neck, excess=excess, tolerance=_SEARCH_DECREASE, locked=locked)))
         progress((k + 1) / len(starts))
-        if len(pieces) > _MANY:
+        if len(found[-1].pieces) > _MANY:
             break
     return min(found, key=lambda s: _cost(mesh, s))
 

@@ -15,14 +15,16 @@ _SHARP = np.radians(35)
 _LEAST_REGION = 0.01
 
 
-def crease_seams(mesh: Mesh) -> NDArray[np.bool_]:
+def crease_seams(mesh: Mesh, *, forbidden: NDArray[np.bool_] | None = None) -> NDArray[np.bool_]:
     """Sharp edges that part the surface into regions worth a piece, (e,) bool.
 
     A sharp edge with the same region on both sides parts nothing and is left out; regions under one hundredth
-    of the area join the neighbour they share the longest border with.
+    of the area join the neighbour they share the longest border with. `forbidden` edges (e,) are not sharp.
     """
     topology = mesh.topology
     sharp = dihedral_angles(mesh) > _SHARP
+    if forbidden is not None:
+        sharp &= ~forbidden
     _, label = topology.face_components(sharp)
     return borders(mesh, merge_small(mesh, label, _LEAST_REGION * mesh.area))
 

@@ -33,6 +33,7 @@ def glue_pieces(
     excess: float,
     smaller_than: float = np.inf,
     tolerance: float = NEWTON_DECREASE,
+    locked: BoolArray | None = None,
 ) -> tuple[BoolArray, list[Judged]]:
     """Glue neighbours, the longest border first, as long as the result keeps to `limits`.
 
@@ -51,6 +52,8 @@ def glue_pieces(
         Only pairs of which one has less area than this.
     tolerance : float
         How far each flattening is driven, see `IsometricSolver.refine`.
+    locked : (e,) bool, optional
+        Edges that stay cut.
 
     Returns
     -------
@@ -65,7 +68,7 @@ def glue_pieces(
     blunt = ~_is_cone(mesh)
     fresh = len(judged)
     for _ in range(_MOST_TRIALS):
-        chain = _longest_chain(mesh, cut, owner, blunt, refused, neck)
+        chain = _longest_chain(mesh, cut if locked is None else cut & ~locked, owner, blunt, refused, neck)
         if chain is None:
             break
         (a, b), edges = chain

@@ -37,6 +37,7 @@ def refine_seams(
     weight: NDArray[np.float64],
     *,
     tolerance: float = NEWTON_DECREASE,
+    forbidden: BoolArray | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> tuple[BoolArray, list[Judged]]:
     """Add seams to `cut` until every piece is a disk that keeps to `limits`.
@@ -53,6 +54,8 @@ def refine_seams(
         Cost of cutting each edge.
     tolerance : float
         How far each flattening is driven, see `IsometricSolver.refine`.
+    forbidden : (e,) bool, optional
+        Edges that are never cut; a high `weight` has to lead the seams round them.
     progress : callable, optional
         Called with the part of the area that is done.
 
@@ -67,7 +70,8 @@ def refine_seams(
     InputError
         No seam opens a piece to a disk: the mesh is not manifold or not consistently wound.
     RefusedError
-        A single triangle breaks `limits`, or the surface is too rough or too detailed to come to an end with.
+        Forbidden edges leave no seam that would help, a single triangle breaks `limits`, or the surface is too rough or too
+        detailed to come to an end with.
     """
     cut = cut.copy()
     left = _MOST_TRIANGLES + _MOST_ROUNDS * len(mesh.F)
@@ -93,6 +97,10 @@ def refine_seams(
                     progress(finished_area / mesh.area)
                 continue
             opened, darts = _mend(mesh, piece, verdict, weight, darts)
+        if forbidden is not None and forbidden[opened].any():
+            opened = opened[~forbidden[opened]]
+            if cut[opened].all():
+                raise _forbidden(piece)
         if cut[opened].all():
             raise _stuck(mesh, piece, verdict, limits)
         cut[opened] = True
@@ -119,6 +127,11 @@ def _endless(mesh: Mesh, pieces: int, missing: float) -> RefusedError:
         f"{mesh.name} is too rough or too detailed for a skin: {pieces} pieces lie flat, but {missing:.0%} of the surface does not "
         "yet; smooth or simplify the mesh, raise --max-distortion, or cut it by hand"
     )
+
+
+def _forbidden(piece: OpenPiece) -> RefusedError:
+    where = f"the {len(piece.faces)} faces about face {int(piece.faces[0])}"
+    return RefusedError(f"the forbidden edges leave no seam that lays {where} flat; allow some of them")
 
 
 def _stuck(mesh: Mesh, piece: OpenPiece, verdict: Verdict | None, limits: Limits) -> SkinfabError:

@@ -1,0 +1,137 @@
+"""Sensors follow their spot on the object when its pieces are cut anew."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from skinfab.flatten.mapping import FlatMap
+from skinfab.material import Material
+from skinfab.mesh.model import Mesh
+from skinfab.pieces import Piece
+from skinfab.placement.check import check_sensor
+from skinfab.placement.edit import middle_of
+from skinfab.placement.sensor import Sensor
+
+FloatArray = NDArray[np.float64]
+
+#: Points along a pattern by which its new direction is found: a spiral of six turns gets ten on each.
+_SAMPLES = 64
+
+
+@dataclass(frozen=True)
+class Carried:
+    """What became of the sensors.
+
+    Parameters
+    ----------
+    sensors : tuple of Sensor
+        Those that still have a spot, in their old order; those on pieces that stayed are the same objects.
+    lost : tuple of Sensor
+        Those whose spot is on no flat piece any more, as they were.
+    remarks : tuple of str
+        One sentence for each that is lost or, where a material says what fits, no longer fits.
+    """
+
+    sensors: tuple[Sensor, ...]
+    lost: tuple[Sensor, ...]
+    remarks: tuple[str, ...]
+
+
+def carry(
+    mesh: Mesh, sensors: Sequence[Sensor], before: Sequence[Piece], after: Sequence[Piece], *, material: Material | None = None
+) -> Carried:
+    """Put sensors on new pieces of the same surface where their spot on the object has come to lie.
+
+    A sensor's middle stays on its spot of the object; its direction is the one in which the new piece turns the pattern's
+    points on the whole.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The surface that is flattened.
+    sensors : sequence of Sensor
+    before, after : sequence of Piece
+        The flat pieces that the sensors lie on, and those that they are to lie on.
+    material : Material, optional
+        Says how near to edges and to each other they may lie; without it nothing is said of that.
+    """
+    kept = {id(piece) for piece in after}
+    old = {piece.id: piece for piece in before}
+    moves = _Moves(mesh, after)
+    carried: list[Sensor] = []
+    lost: list[Sensor] = []
+    moved: list[Sensor] = []
+    for sensor in sensors:
+        piece = old.get(sensor.piece)
+        if piece is not None and id(piece) in kept:
+            carried.append(sensor)
+            continue
+        new = moves.of(sensor, piece) if piece is not None else None
+        if new is None:
+            lost.append(sensor)
+        else:
+            carried.append(new)
+            moved.append(new)
+    remarks = [
+        f"{s.id} was taken off: its spot on the object is on no flat piece any more; cut so that it is, and place it again" for s in lost
+    ]
+    if material is not None:
+        new_pieces = {piece.id: piece for piece in after}
+        for k, sensor in enumerate(moved):
+            # Each pair once. Sensors that were not moved lie on other pieces.
+            wrong = check_sensor(new_pieces[sensor.piece], sensor, moved[:k], material=material)
+            if wrong:
+                remarks.append(f"{'; '.join(wrong)}, since the object was cut anew; move, turn or shrink it")
+    return Carried(tuple(carried), tuple(lost), tuple(remarks))
+
+
+class _Moves:
+    """Maps of the pieces concerned, each made once."""
+
+    def __init__(self, mesh: Mesh, after: Sequence[Piece]) -> None:
+        self._mesh, self._after = mesh, after
+        self._owner = np.full(len(mesh.F), -1)
+        for k, piece in enumerate(after):
+            self._owner[piece.faces] = k
+        self._maps: dict[int, FlatMap] = {}
+
+    def of(self, sensor: Sensor, piece: Piece) -> Sensor | None:
+        """The sensor where its spot now lies; None where the spot is gone."""
+        path = sensor.printed_path
+        old = np.vstack([middle_of(sensor), path.point_at(np.linspace(0, 1, _SAMPLES + 1))])
+        spots = self._map(piece).to_object(old)
+        there = np.where(spots.face >= 0, self._owner[spots.face], -1)
+        # A middle beside the piece (a pattern over a hole or an edge) has no spot: the nearest part of the pattern has.
+        usable = np.flatnonzero(there >= 0)
+        if (spots.face[0] >= 0 and there[0] < 0) or not len(usable):
+            return None
+        anchor = int(usable[np.argmin(np.linalg.norm(old[usable] - old[0], axis=1))])
+        target = self._after[there[anchor]]
+        shared = there == there[anchor]
+        new = self._map(target).to_flat(spots.face[shared], spots.barycentric[shared])
+        middle = new[int(np.count_nonzero(shared[:anchor]))]
+        turn = _turn(old[shared] - old[anchor], new - middle)
+        c, s = np.cos(turn), np.sin(turn)
+        dx, dy = np.array([sensor.x, sensor.y]) - old[anchor]
+        return dataclasses.replace(
+            sensor,
+            piece=target.id,
+            x=float(middle[0] + c * dx - s * dy),
+            y=float(middle[1] + s * dx + c * dy),
+            angle=float((sensor.angle + turn) % (2 * np.pi)),
+        )
+
+    def _map(self, piece: Piece) -> FlatMap:
+        if id(piece) not in self._maps:
+            self._maps[id(piece)] = FlatMap(self._mesh, piece)
+        return self._maps[id(piece)]
+
+
+def _turn(old: FloatArray, new: FloatArray) -> float:
+    """Angle, rad, that turns vectors (n, 2) into others best, by least squares."""
+    return float(np.arctan2((old[:, 0] * new[:, 1] - old[:, 1] * new[:, 0]).sum(), (old * new).sum()))
