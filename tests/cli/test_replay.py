@@ -51,6 +51,20 @@ def test_any_log_gives_the_same_angles(tmp_path: Path, calibration: Path, capsys
     assert len(rows) == 3200 and float(rows[1000]["angle_deg"]) == pytest.approx(45 - 40 * math.cos(2 * math.pi * 9.917 / 8), abs=1)
 
 
+def test_an_interrupted_run_leaves_the_one_before_as_it_was(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    write_log(recording(), tmp_path / "a.mcap")
+    write_log(recording(simulated=False), tmp_path / "b.mcap")
+    assert main(["replay", str(tmp_path / "a.mcap"), "-o", str(tmp_path / "out")]) == 0
+    before = {path.name: path.read_bytes() for path in (tmp_path / "out").iterdir()}
+
+    def interrupted(*args: object, **options: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("calibration.strain.time_figure.draw_over_time", interrupted)
+    assert main(["replay", str(tmp_path / "b.mcap"), "-o", str(tmp_path / "out")]) == 130
+    assert {path.name: path.read_bytes() for path in (tmp_path / "out").iterdir()} == before
+
+
 def test_words_and_checks_for_people(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     made = recording(simulated=False)
     made.values[:, 1] = 7.0
