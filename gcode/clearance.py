@@ -14,8 +14,8 @@ from skinfab.tolerances import PREVIEW_CHORD_MM
 
 def chords(shapes: Sequence[Shape], tolerance: float = PREVIEW_CHORD_MM) -> NDArray[np.float64]:
     """Shapes as straight pieces, (n, 2, 2) mm; arcs leave theirs by at most `tolerance` mm."""
-    pieces = [part for s in shapes for part in (s.chords(tolerance) if isinstance(s, Curve) else (s,))]
-    return np.array([(p.start, p.end) for p in pieces]).reshape(-1, 2, 2)
+    points = [s.chord_points(tolerance) if isinstance(s, Curve) else np.array((s.start, s.end)) for s in shapes]
+    return np.concatenate([np.empty((0, 2, 2)), *(np.stack([p[:-1], p[1:]], axis=1) for p in points)])
 
 
 class Laid:

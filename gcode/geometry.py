@@ -135,8 +135,18 @@ class Curve:
 
     def chords(self, tolerance: float) -> tuple[Straight, ...]:
         """Chords that leave the arc by at most `tolerance` mm."""
+        return tuple(Straight(part.start, part.end) for part in self.split(self._chord_count(tolerance)))
+
+    def chord_points(self, tolerance: float) -> NDArray[np.float64]:
+        """The ends of `chords` in turn, (n, 2) mm, to compute with."""
+        angle = self._angle(self.start) + self.sweep * np.linspace(0.0, 1.0, self._chord_count(tolerance) + 1)
+        points = np.array(self.centre) + self.radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+        points[0], points[-1] = self.start, self.end
+        return points
+
+    def _chord_count(self, tolerance: float) -> int:
         widest = 2 * math.acos(max(1 - tolerance / self.radius, -1.0))
-        return tuple(Straight(part.start, part.end) for part in self.split(max(math.ceil(abs(self.sweep) / widest), 1)))
+        return max(math.ceil(abs(self.sweep) / widest), 1)
 
     @property
     def segment(self) -> Arc:

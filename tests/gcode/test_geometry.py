@@ -44,8 +44,11 @@ def test_parts_lie_on_the_whole(arc: Arc, count: int) -> None:
 def test_chords_keep_their_tolerance(arc: Arc, tolerance: float) -> None:
     curve = shape_of(arc)
     assert isinstance(curve, Curve)
-    for chord in curve.chords(tolerance):
+    chords, points = curve.chords(tolerance), curve.chord_points(tolerance)
+    for chord in chords:
         assert curve.radius - math.dist(chord.point_at(0.5), curve.centre) <= tolerance * (1 + 1e-6) + 1e-9
+    np.testing.assert_allclose(points, [chords[0].start, *(chord.end for chord in chords)], atol=1e-9)
+    assert (tuple(points[0]), tuple(points[-1])) == (curve.start, curve.end)
 
 
 @given(arcs)
