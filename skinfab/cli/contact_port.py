@@ -49,7 +49,7 @@ def watch_port(
             stream = replace(stream, rate_hz=_counted(source, frames, end))
             notes.append(f"{port} does not say how many frames come a second; {stream.rate_hz:.4g} were counted")
         watch = ContactDetector(stream, false_alarms=false_alarms, channels=channels)
-        told = _Told(watch)
+        told = Told(watch)
         try:
             for frame in frames:
                 told.step(frame)
@@ -85,7 +85,7 @@ def _counted(source: SerialPort, frames: list[Frame], end: float) -> float:
     return (len(frames) - 1) / spans
 
 
-class _Told:
+class Told:
     """Says what comes as it comes: contacts, channels that are watched, not yet or no more."""
 
     def __init__(self, watch: ContactDetector) -> None:

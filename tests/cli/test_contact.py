@@ -2,6 +2,7 @@
 
 import csv
 import json
+import re
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -9,13 +10,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from calibration.contact.detector import detect
+from calibration.contact.detector import ContactDetector, Detection, detect
 from calibration.contact.objects import OBJECTS
 from calibration.contact.simulator import simulate
 from skinfab.cli import contact
+from skinfab.cli.contact import Trial
+from skinfab.cli.contact_files import write_files
+from skinfab.cli.contact_port import Told
 from skinfab.cli.main import main
-from skinfab.readout.frame import Recording
-from skinfab.readout.logs.log import write_log
+from skinfab.readout.frame import Channel, Recording, Stream
+from skinfab.readout.logs.log import read_log, write_log
 from skinfab.readout.pty_server import PtyServer
 
 FILES = ["contact.png", "events.csv", "result.json", "table.csv"]
@@ -163,6 +167,104 @@ def test_a_port_is_watched_and_told_as_it_comes(tmp_path: Path, capsys: pytest.C
     events = rows(out / "events.csv")
     assert [each["channel"] for each in events] == [each.channel for each in there]
     assert [float(each["start_s"]) for each in events] == pytest.approx([each.start for each in there], abs=0.03)
+
+
+def test_lines_that_do_not_say_their_rate_are_counted(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    log = simulate("grip", seed=2).recording
+    with PtyServer(log.stream, (log.frame(k) for k in range(700)), rate_hz=200, ascii_lines=True) as server:
+        assert main(["contact", str(server.path), "--seconds", "3.5", "-o", str(tmp_path / "out")]) == 0
+    said = capsys.readouterr()
+    counted = float(re.search(r"does not say how many frames come a second; ([0-9.]+) were counted", said.err)[1])  # type: ignore[index]
+    # The lines bring the device's own clock, which says 100 Hz, however fast they are sent here.
+    assert counted == pytest.approx(100, rel=0.02) and "S1 touched, +" in said.err and "note: 2.99 s, S1, S2, S3, S4 at rest" in said.err
+    assert rows(tmp_path / "out/events.csv")[0]["channel"] == "S1"
+
+
+def test_lines_for_too_short_a_while_have_no_rate(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    log = simulate("grip", seed=2).recording
+    with PtyServer(log.stream, (log.frame(k) for k in range(1000)), rate_hz=5, ascii_lines=True) as server:
+        assert main(["contact", str(server.path), "--seconds", "0.5", "-o", str(tmp_path / "out")]) == 1
+    assert "too few to count how many come a second; watch it for longer" in capsys.readouterr().err and not (tmp_path / "out").exists()
+
+
+def test_what_is_not_watched_is_said_while_it_lasts(capsys: pytest.CaptureFixture[str]) -> None:
+    rng = np.random.default_rng(0)
+    time = np.arange(2500) / 100
+    values = 100 + 0.4 * rng.standard_normal((2500, 3))
+    values[:, 0] += 30 * np.sin(time)  # never at rest
+    values[1000:1500, 1] = 500.0  # froze, and came back
+    values[:, 2] = np.nan
+    stream = Stream("skin", (Channel("S1"), Channel("S2"), Channel("S3")), 100.0)
+    told = Told(ContactDetector(stream))
+    for frame in Recording.of_values(stream, values, device_time=time):
+        told.step(frame)
+    said = capsys.readouterr().err.splitlines()
+    assert said == [
+        "note: 2.99 s, S2 at rest; watched from now on",
+        "note: 10.00 s, S1, S3 not watched yet: never at rest for 3 s, or silent; leave the object alone",
+        "contact: 10.02 s, S2 touched, +400.0 %",
+        "contact: 11.00 s, S2 was not touched at 10.00 s: it had frozen",
+        "note: 11.00 s, S2 froze; it is not watched, check its wires and its range",
+        "note: 15.30 s, S2 reads again",
+        "note: 20.00 s, S1, S3 not watched yet: never at rest for 3 s, or silent; leave the object alone",
+    ]
+
+
+def test_a_channel_that_froze_is_named_everywhere(log: Callable[..., str], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    lines = Path(log()).read_text().splitlines()
+    stuck = [f"{row.split(',')[0]},500,{row.split(',', 2)[2]}" for row in lines[1001:]]
+    (tmp_path / "stuck.csv").write_text("\n".join([*lines[:1001], *stuck, ""]))
+    assert main(["contact", str(tmp_path / "stuck.csv"), "-o", str(tmp_path / "o")]) == 0
+    said = capsys.readouterr()
+    assert "stuck.csv: channel S1 froze at 10.00 s (500, the most that it ever read, as at the end of a range), to the end" in said.err
+    assert "(frozen)" in said.out and [each["state"] for each in rows(tmp_path / "o/table.csv")] == ["frozen", "", "silent"]
+    (found,) = json.loads((tmp_path / "o/result.json").read_text())["objects"].values()
+    first = found["trials"][0]["channels"][0]
+    assert first["state"] == "frozen" and first["freezes"] == [{"start": 10.0, "end": None, "value": 500.0}]
+    assert [each["channel"] for each in rows(tmp_path / "o/events.csv")] == ["S1", "S2"]
+
+
+def test_a_clock_set_back_in_a_log_is_said(log: Callable[..., str], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    lines = Path(log()).read_text().splitlines()
+    anew = [f"{k / 100}," + row.split(",", 1)[1] for k, row in enumerate(lines[701:])]
+    (tmp_path / "anew.csv").write_text("\n".join([*lines[:701], *anew, ""]))
+    assert main(["contact", str(tmp_path / "anew.csv"), "-o", str(tmp_path / "o"), "--json"]) == 0
+    assert any("anew.csv: the clock is set back before frame 801" in note for note in json.loads(capsys.readouterr().out)["notes"])
+    events = [(each["channel"], float(each["start_s"]), each["dropped"]) for each in rows(tmp_path / "o/events.csv")]
+    assert events[:2] == [("S1", pytest.approx(5, abs=0.05), "1"), ("S2", pytest.approx(6, abs=0.05), "1")]
+
+
+def test_a_run_that_is_stopped_leaves_the_folder_as_it_was(
+    log: Callable[..., str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "out"
+    assert main(["contact", log(), "-o", str(out)]) == 0
+    before = {each.name: each.read_bytes() for each in out.iterdir()}
+
+    def stopped(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("calibration.contact.figure.draw_contacts", stopped)
+    for folder in (out, tmp_path / "new"):
+        with pytest.raises(KeyboardInterrupt):
+            write_files(folder, {"a": [Trial("a", "", *_found(log("b.csv", seed=1)))]}, {"a": ()}, {})
+    assert {each.name: each.read_bytes() for each in out.iterdir()} == before and not (tmp_path / "new").exists()
+
+
+def _found(path: str) -> tuple[Recording, Detection]:
+    recording = read_log(path).recording
+    return recording, detect(recording)
+
+
+def test_the_truth_of_an_earlier_run_is_no_truth_of_this_one(log: Callable[..., str], tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    assert main(["contact", "simulator", "--object", "grip", "--trials", "1", "-o", str(out)]) == 0
+    assert (out / "truth.csv").exists()
+    assert main(["contact", log(), "-o", str(out)]) == 0
+    assert sorted(each.name for each in out.iterdir()) == FILES
+    (out / "truth.csv").write_text("what,somebody\nelse,wrote\n")
+    assert main(["contact", log(), "-o", str(out)]) == 0
+    assert (out / "truth.csv").read_text() == "what,somebody\nelse,wrote\n"
 
 
 def test_a_port_without_a_frame_in_time_is_an_error(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
