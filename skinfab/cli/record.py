@@ -77,7 +77,7 @@ def run(args: argparse.Namespace) -> int:
             record(source, recorder, seconds=args.seconds, told=show, stop=stop)
         counts, gone = asdict(source.counts), outages(source, began, time.time())
         fault = source.fault if isinstance(source, SerialPort) else ""
-    notes = _notes(counts, args.output, recorder.bytes) if recorder.frames else ["no frame came; no file was left"]
+    notes = _notes(counts, args.output, recorder.bytes if recorder.frames else 0)
     if counts["bad"] and fault:
         notes.append(f"the last that was none: {fault}")
     result: dict[str, Any] = {
@@ -213,13 +213,15 @@ def _notes(counts: dict[str, int], path: Path, size: int) -> list[str]:
     from skinfab.readout.logs.log import read_log
 
     told = {
-        "bad": "pieces were no packet: noise on the line, or another program's output",
+        "bad": "pieces were no frame: noise on the line, or another program's output",
         "late": "frames came late or a second time, and were dropped",
         "unchecked": "frames came without a checksum; a wrong digit in them does not show",
         "reopened": "times the port was gone and came back, or the device began anew",
     }
     notes = [f"{counts[name]:,} {words}" for name, words in told.items() if counts[name]]
-    if size <= _CHECKED_BYTES:
+    if not size:
+        notes.append("no frame came; no file was left")
+    elif size <= _CHECKED_BYTES:
         notes += check(read_log(path).recording)
     return notes
 

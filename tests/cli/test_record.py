@@ -3,10 +3,13 @@
 import io
 import itertools
 import json
+import os
+import pty
 import re
 import signal
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 
@@ -40,7 +43,7 @@ def test_a_port_is_recorded_and_what_went_wrong_is_said(tmp_path: Path, capsys: 
     result = json.loads(out.out)
     assert out.err == "" and result["frames"] == len(read_log(tmp_path / "a.frames").recording) > 200
     assert result["counts"]["reopened"] == 1 and result["counts"]["bad"] > 10 and result["counts"]["lost"] > 5
-    for words in ("pieces were no packet", "frames came late or a second time"):
+    for words in ("pieces were no frame", "frames came late or a second time"):
         assert any(words in note for note in result["notes"])
     (gone,) = result["outages"]
     assert gone["back"] and 0.3 < gone["after_s"] < 0.8 and 0.1 < gone["lasted_s"] < 0.6
@@ -68,6 +71,31 @@ def test_lines_without_a_checksum_are_said(tmp_path: Path, capsys: pytest.Captur
     with PtyServer(STREAM, strain_frames(STREAM), ascii_lines=True) as device:
         assert main(["record", str(device.path), "-o", str(tmp_path / "a.csv"), "--seconds", "0.5"]) == 0
     assert "without a checksum" in capsys.readouterr().err
+
+
+def test_a_board_whose_numbers_cannot_be_told_apart_is_told_so(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Decimal commas between commas: two numbers look like four."""
+    ours, theirs = pty.openpty()
+    stop = threading.Event()
+
+    def talk() -> None:
+        while not stop.wait(0.02):
+            os.write(ours, b"S1,S2\n0,871,1,25\n")
+
+    board = threading.Thread(target=talk)
+    board.start()
+    try:
+        assert main(["record", os.ttyname(theirs), "-o", str(tmp_path / "a.csv"), "--seconds", "0.5", "--json"]) == 0
+    finally:
+        stop.set()
+        board.join()
+        os.close(ours)
+        os.close(theirs)
+    result = json.loads(capsys.readouterr().out)
+    assert result["frames"] == 0 and not (tmp_path / "a.csv").exists()
+    bad, none, why = result["notes"]
+    assert "pieces were no frame" in bad and none == "no frame came; no file was left"
+    assert "'0,871,1,25' has 4 numbers where 2 are named; are these decimal commas? Print points, or part" in why
 
 
 class Terminal(io.StringIO):
