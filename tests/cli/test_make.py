@@ -4,6 +4,8 @@ import json
 import re
 import subprocess
 import sys
+from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 
 import ezdxf
@@ -36,13 +38,23 @@ PUBLISHED = {
 }
 
 
-# One worker makes an object and judges it: the others need not make it again.
-@pytest.fixture(scope="module", params=[pytest.param(name, marks=pytest.mark.xdist_group(name)) for name in PUBLISHED])
-def made(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> tuple[str, Path, dict]:
-    name = request.param
-    folder = tmp_path_factory.mktemp(name) / "out"
-    assert main(["make", str(ROOT / f"meshes/{name}.obj"), "-o", str(folder)]) == 0
-    return name, folder, results.read_report(folder)
+@pytest.fixture(scope="module")
+def made_once(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
+    """The folder that an object is made into by the defaults, once for all tests here, which only read it."""
+
+    @cache
+    def make(name: str) -> Path:
+        folder = tmp_path_factory.mktemp(name) / "out"
+        assert main(["make", str(ROOT / f"meshes/{name}.obj"), "-o", str(folder)]) == 0
+        return folder
+
+    return make
+
+
+@pytest.fixture(scope="module", params=PUBLISHED)
+def made(request: pytest.FixtureRequest, made_once: Callable[[str], Path]) -> tuple[str, Path, dict]:
+    folder = made_once(request.param)
+    return request.param, folder, results.read_report(folder)
 
 
 def test_all_files_are_there(made: tuple[str, Path, dict]) -> None:
@@ -166,28 +178,26 @@ def test_times_and_memory_are_told(made: tuple[str, Path, dict]) -> None:
     assert report["peak_rss_mb"] > 10
 
 
-def test_same_input_same_bytes(tmp_path: Path) -> None:
-    mesh = str(ROOT / "meshes/robot_finger.obj")
-    for name in "ab":
-        assert main(["make", mesh, "-o", str(tmp_path / name)]) == 0
-    for file in sorted(p.relative_to(tmp_path / "a") for p in (tmp_path / "a").rglob("*") if p.is_file()):
+def test_same_input_same_bytes(made_once: Callable[[str], Path], tmp_path: Path) -> None:
+    before, again = made_once("robot_finger"), tmp_path / "again"
+    assert main(["make", str(ROOT / "meshes/robot_finger.obj"), "-o", str(again)]) == 0
+    for file in sorted(p.relative_to(before) for p in before.rglob("*") if p.is_file()):
         if file.name not in ("report.json", "report.html", "preview.png"):
-            assert (tmp_path / "a" / file).read_bytes() == (tmp_path / "b" / file).read_bytes(), file
+            assert (before / file).read_bytes() == (again / file).read_bytes(), file
 
 
-def test_the_document_makes_the_same_gcode_again(tmp_path: Path) -> None:
-    assert main(["make", str(ROOT / "meshes/cube.obj"), "-o", str(tmp_path / "out")]) == 0
-    assert main(["gcode", str(tmp_path / "out/skin.skin"), "-o", str(tmp_path / "again")]) == 0
-    for file in (tmp_path / "out/gcode").iterdir():
+def test_the_document_makes_the_same_gcode_again(made_once: Callable[[str], Path], tmp_path: Path) -> None:
+    before = made_once("cube")
+    assert main(["gcode", str(before / "skin.skin"), "-o", str(tmp_path / "again")]) == 0
+    for file in (before / "gcode").iterdir():
         assert (tmp_path / "again" / file.name).read_bytes() == file.read_bytes()
 
 
-def test_a_document_in_place_of_a_mesh(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+def test_a_document_in_place_of_a_mesh(made_once: Callable[[str], Path], tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     mesh, skin = str(ROOT / "meshes/cube.obj"), str(tmp_path / "cube.skin")
     assert main(["segment", mesh, "-o", skin, "--thickness", "2.5"]) == 0
     assert main(["make", skin, "-o", str(tmp_path / "from_skin")]) == 0
-    assert main(["make", mesh, "-o", str(tmp_path / "from_mesh")]) == 0
-    one, two = (tmp_path / name for name in ("from_skin", "from_mesh"))
+    one, two = tmp_path / "from_skin", made_once("cube")
     for file in ("gcode/P1.gcode", "mould/P1.stl", "flat.obj", "flat.svg", "skin.skin"):
         assert (one / file).read_bytes() == (two / file).read_bytes()
     assert main(["make", str(one / "skin.skin"), "-o", str(tmp_path / "again")]) == 0  # its sensors are kept
