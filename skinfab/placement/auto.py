@@ -18,6 +18,7 @@ from skinfab.patterns.contact_spiral import ContactSpiral
 from skinfab.patterns.registry import make_pattern
 from skinfab.patterns.strain_lines import StrainLines
 from skinfab.pieces import Piece
+from skinfab.placement.add import free_channel, free_id
 from skinfab.placement.fill import Region, fill, regions_of
 from skinfab.placement.finger import is_finger, place_strain, strain_sizes
 from skinfab.placement.sensor import Sensor
@@ -129,11 +130,7 @@ class Namer:
 
     def add(self, space: Space, sensor: Sensor) -> Sensor:
         """Give a sensor the next free id of its kind and the next free channel, and put it on its piece."""
-        letter = sensor.pattern.senses[0].upper()
-        ids, channels = {s.id for s in self.sensors}, {s.channel for s in self.sensors}
-        id = next(f"{letter}{k}" for k in range(1, len(ids) + 2) if f"{letter}{k}" not in ids)
-        channel = next(k for k in range(len(channels) + 1) if k not in channels)
-        named = dataclasses.replace(sensor, id=id, channel=channel)
+        named = dataclasses.replace(sensor, id=free_id(self.sensors, sensor.pattern), channel=free_channel(self.sensors))
         self.sensors.append(named)
         space.add(named)
         return named
