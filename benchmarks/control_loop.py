@@ -24,6 +24,7 @@ from calibration.control.margin import judged
 from calibration.control.protocols import uniform
 from calibration.finger.logs import calibrated
 from calibration.finger.simulated import HUMAN, ROBOT
+from skinfab.readout.priority import real_time
 from skinfab.readout.pty_server import PtyServer
 from skinfab.readout.serial_port import SerialPort
 
@@ -69,7 +70,7 @@ def main() -> None:
     def send(command: float) -> None:
         speed.value = command
 
-    with SerialPort(ours.recv()) as port:
+    with real_time() as granted, SerialPort(ours.recv()) as port:
         cpu = time.process_time()
         loop = run_loop(port, JointController(human, robot, gain=gain), send, seconds=args.seconds)
         cpu = time.process_time() - cpu
@@ -88,7 +89,7 @@ def main() -> None:
         f"frame to command: median {np.median(whole):.2f}, 99 % {np.quantile(whole, 0.99):.2f}, 99.9 % {np.quantile(whole, 0.999):.2f}, "
         f"worst {whole.max():.2f} ms; "
         f"jitter 99 % {np.quantile(jitter, 0.99):.2f}, worst {jitter.max():.2f} ms; {100 * cpu / args.seconds:.1f} % of one core; "
-        f"mean error {error.mean():.2f} degrees"
+        f"mean error {error.mean():.2f} degrees; {'with' if granted else 'without'} real-time priority"
     )
     if args.figure:
         latency = np.full(len(answered), np.nan)

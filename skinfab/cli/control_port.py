@@ -24,9 +24,11 @@ def run_port(args: argparse.Namespace, human: Input, robot: Input, margin: Margi
     from calibration.control.loop import run_loop
     from skinfab.cli.control import RATE_HZ
     from skinfab.cli.record import outage_notes, outages
+    from skinfab.readout.priority import real_time
     from skinfab.readout.serial_port import SerialPort
 
-    with SerialPort(args.port) as port:
+    # Before the port is opened, whose reader is a thread of its own.
+    with real_time() as granted, SerialPort(args.port) as port:
         stream = port.stream
         human, robot = (type(each)(each.calibration, stream.index(each.calibration.signal)) for each in (human, robot))
         period = 1 / (stream.rate_hz or RATE_HZ)
@@ -36,7 +38,7 @@ def run_port(args: argparse.Namespace, human: Input, robot: Input, margin: Margi
             loop = run_loop(port, JointController(human, robot, **options, period_s=period), send, seconds=args.seconds)
         counts, gone = port.counts, outages(port, began, time.time())
     result = facts(args, loop, margin, simulated=stream.simulated)
-    result["outages"] = gone
+    result |= {"real_time": granted, "outages": gone}
     result["counts"] = {"lost": counts.lost, "bad": counts.bad, "late": counts.late, "reopened": counts.reopened}
     _write(args, loop, result)
     if args.json:
@@ -46,7 +48,8 @@ def run_port(args: argparse.Namespace, human: Input, robot: Input, margin: Margi
     taken = result["latency_ms"]
     print(
         f"{result['commands']} commands in {args.seconds:g} s: from frame to command {taken['median']:.2f} ms, worst {taken['worst']:.2f}; "
-        f"held or stopped {100 * result['held_or_stopped']:.0f} % of them; {counts.lost} frames lost, {counts.bad} bad"
+        f"held or stopped {100 * result['held_or_stopped']:.0f} % of them; {counts.lost} frames lost, {counts.bad} bad; "
+        f"{'with' if granted else 'without'} real-time priority"
         if taken
         else f"no frame came from {args.port} in {args.seconds:g} s"
     )

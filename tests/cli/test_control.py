@@ -113,7 +113,8 @@ def test_port(calibrations: dict[str, str], tmp_path: Path, capsys: pytest.Captu
     hand.join(5)
     result = json.loads(capsys.readouterr().out)
     assert status == 0 and sorted(path.name for path in (tmp_path / "o").iterdir()) == FILES
-    assert result["simulated"] is True and result["counts"]["bad"] == 0
+    assert result["simulated"] is True and result["counts"]["bad"] == 0 and result["outages"] == []
+    assert result["real_time"] in (True, False) and os.sched_getscheduler(0) == os.SCHED_OTHER
     assert result["commands"] + result["passed_over"] > 130 and 0 < result["latency_ms"]["median"] <= result["latency_ms"]["worst"]
     commands = [line for line in received if not line.startswith(b"end")]
     assert len(commands) == result["commands"] + 1 and float(commands[-1]) == 0.0
