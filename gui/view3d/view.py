@@ -1,0 +1,274 @@
+"""The 3D view: turns, moves and enlarges the object, says what the pointer is on, and hands clicks to the tool."""
+
+from __future__ import annotations
+
+import threading
+import time
+import tkinter as tk
+from collections.abc import Callable
+from tkinter import ttk
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+from PIL import Image, ImageTk
+
+from gui.state.derived import Derived
+from gui.state.selection import NOTHING, Target
+from gui.state.session import Session
+from gui.theme import Theme
+from gui.view3d.camera import SIDES, Camera
+from gui.view3d.detail import Detail
+from gui.view3d.furniture import Furniture
+from gui.view3d.gestures import Gestures
+from gui.view3d.hit import Hit, hit
+from gui.view3d.labels import piece_labels, seam_labels, sensor_label
+from gui.view3d.painter import Painter, warm
+from gui.view3d.scene import Scene
+from gui.view3d.solid import Solid
+from skinfab.mesh.model import Mesh
+from skinfab.skin import Skin
+
+#: Milliseconds without a change after which the picture is drawn at its best.
+_REST_MS = 140
+
+#: A picture of a moving object that takes longer is drawn from the rough likeness, s: 30 pictures a second.
+_SLOW = 0.030
+
+#: Samples of the best picture at most: four a pixel up to 1600 x 1000, one where the screen is finer than the eye.
+_SAMPLES = 6_400_000
+
+#: How near the pointer must come to a line, pixels at 96 dots per inch.
+_REACH = 5
+
+_EMPTY = "Open a mesh or a skin document"
+
+
+class View3D(ttk.Frame):
+    """The object, with its seams and sensors.
+
+    The left button turns the object, unless the tool takes the drag; the right one always turns it. The middle button, or the left with
+    Ctrl, moves it, the wheel enlarges what is under the pointer. Arrow keys turn (with Shift they move), + and - enlarge, f shows
+    all, 1 to 6 show the six sides.
+
+    Parameters
+    ----------
+    master : tk.Misc
+    session : Session
+        Its document is shown; hovering is told to it.
+    derived : Derived
+    theme : Theme
+    on_click : callable, optional
+        Is called with a `Hit` (None beside the object) and whether Shift is down when the left button is let go where it was pressed.
+    on_drag : callable, optional
+        Is called with a `Hit` when a drag with the left button begins on the object, that of the place where it began; the tool takes
+        the drag by returning True, and is then called with each further hit.
+    on_release : callable, optional
+        Is called with a `Hit` or None at the end of a drag that the tool took.
+    options
+        Of the frame, such as ``name="view3d"``.
+    """
+
+    def __init__(
+        self,
+        master: tk.Misc,
+        session: Session,
+        derived: Derived,
+        theme: Theme,
+        *,
+        on_click: Callable[[Hit | None, bool], object] | None = None,
+        on_drag: Callable[[Hit], object] | None = None,
+        on_release: Callable[[Hit | None], object] | None = None,
+        **options: Any,
+    ) -> None:
+        super().__init__(master, **options)
+        self.session, self.theme = session, theme
+        self.on_click, self.on_drag, self.on_release = on_click, on_drag, on_release
+        self.dpi = self.winfo_fpixels("1i") / 96
+        self.scene = Scene(session, derived, theme, dpi=self.dpi)
+        self.painter = Painter()
+        self.camera = Camera(np.eye(3), np.zeros(3), np.ones(3), 1, 1)
+        #: How many pictures were drawn, and how long the last one took, s.
+        self.pictures, self.last_picture = 0, 0.0
+        self.canvas = tk.Canvas(self, name="canvas", highlightthickness=1, borderwidth=0, takefocus=True, width=400, height=300)
+        self.canvas.pack(fill="both", expand=True)
+        self._photo: ImageTk.PhotoImage | None = None
+        self._picture = self.canvas.create_image(0, 0, anchor="nw", tags=("picture",))
+        self._furniture = Furniture(self.canvas, dpi=self.dpi)
+        self._mesh: Mesh | None = None
+        self._solid: Solid | None = None
+        self._detail: Detail | None = None
+        self._idle = self._rest = ""
+        self._moving = False
+        self._legend: tuple[object, ...] = ()
+        self._slow = False
+        Gestures(self)
+        self.canvas.bind("<Configure>", self._configured, add=True)
+        self.bind("<Destroy>", self._destroyed, add=True)
+        for topic in ("skin", "selection", "hover", "shading"):
+            session.listen(topic, self.redraw)
+        self.restyle(theme)
+        # Loading what is compiled takes half a second: while the window is still empty, not when there is something to show.
+        threading.Thread(target=warm, daemon=True).start()
+
+    # What others ask of it
+
+    def restyle(self, theme: Theme) -> None:
+        """Take the colours of another theme."""
+        self.theme = self.scene.theme = theme
+        self.canvas.configure(background=theme.view, highlightbackground=theme.border, highlightcolor=theme.accent)
+        self.redraw()
+
+    def show(self, name: str, polylines: list[ArrayLike], colour: str, width: float) -> None:
+        """Draw polylines (k, 3) mm over the object, a single point as a dot, until the same name is shown anew or hidden."""
+        self.scene.show(name, polylines, colour, width)
+        self.redraw()
+
+    def glow(self, name: str, points: ArrayLike, colour: str, *, radius: float, strength: float = 1.0) -> None:
+        """Let the object glow round points (k, 3) mm, out to `radius` mm; `strength` from 0 to 1."""
+        self.scene.glow(name, points, colour, radius=radius, strength=strength)
+        self.redraw()
+
+    def hide(self, name: str) -> None:
+        """Take away what is shown or glows under a name."""
+        if self.scene.hide(name):
+            self.redraw()
+
+    def fit(self) -> None:
+        """Show all of the object."""
+        self.move(self.camera.whole())
+
+    def look(self, side: str) -> None:
+        """From one of "front", "back", "left", "right", "top", "bottom"."""
+        if side not in SIDES:
+            raise ValueError(f"no side {side!r}; there are {', '.join(SIDES)}")
+        self.move(self.camera.seen_from(side).whole())
+
+    def move(self, camera: Camera) -> None:
+        """See the object in another way; drawn at its best when it comes to rest."""
+        self.camera = camera
+        self._moving = True
+        self.redraw()
+
+    def hit_at(self, x: int, y: int) -> Hit | None:
+        """What is at a pixel of the canvas as it was drawn last; None beside the object."""
+        skin = self.session.skin
+        if skin is None or self._solid is None or self._mesh is not skin.object or self.painter.camera is None:
+            return None
+        strokes = self.scene.strokes(skin, self.painter.camera.scale)
+        return hit(skin, self.painter, strokes, self.scene.owner(skin), x, y, reach=round(_REACH * self.dpi))
+
+    def hover_at(self, x: int, y: int) -> Target:
+        """Tell the session what is at a pixel."""
+        found = self.hit_at(x, y)
+        target = NOTHING if found is None else found.target
+        self.session.hover(target)
+        return target
+
+    def redraw(self) -> None:
+        """Draw anew as soon as nothing else is waiting; many calls give one picture."""
+        if not self._idle:
+            self._idle = self.after_idle(self._draw_idle)
+
+    def settle(self) -> None:
+        """Draw now, at its best."""
+        self._cancel()
+        self._moving = False
+        self._draw()
+
+    # How it draws
+
+    def _draw_idle(self) -> None:
+        self._idle = ""
+        self._draw()
+        if self._moving:
+            if self._rest:
+                self.after_cancel(self._rest)
+            self._rest = self.after(_REST_MS, self._come_to_rest)
+
+    def _come_to_rest(self) -> None:
+        self._rest = ""
+        self._moving = False
+        self._draw()
+
+    def _draw(self) -> None:
+        width, height = self.canvas.winfo_width(), self.canvas.winfo_height()
+        if width < 8 or height < 8:
+            return  # not on the screen yet
+        skin = self.session.skin
+        self._furniture.notice(_EMPTY if skin is None else "", self.theme)
+        if skin is None:
+            self._mesh = self._solid = self._detail = None
+            self.canvas.itemconfigure(self._picture, state="hidden")
+            self._furniture.labels([], self.theme)
+            self.canvas.delete("axes", "scale", "legend")
+            self._legend = ()
+            return
+        self._take(skin, width, height)
+        start = time.perf_counter()
+        self._paste(self._paint(skin))
+        self._label(skin)
+        self.last_picture = time.perf_counter() - start
+        self.pictures += 1
+
+    def _take(self, skin: Skin, width: int, height: int) -> None:
+        """Prepare what follows from the object and the window's size."""
+        if self._mesh is not skin.object:
+            known = self._mesh is not None and self._mesh.F is skin.object.F
+            self._mesh, self._solid, self._slow = skin.object, Solid.of(skin.object), False
+            self._detail = Detail(skin.object)
+            if not known:
+                self.camera = Camera.fitted(skin.object.V[skin.object.topology.used_vertices], width, height)
+        if (self.camera.width, self.camera.height) != (width, height):
+            self.camera = self.camera.sized(width, height)
+
+    def _paint(self, skin: Skin) -> np.ndarray[Any, np.dtype[np.uint8]]:
+        assert self._solid is not None
+        camera, paint = self.camera, self.scene.paint(skin)
+        strokes, spots = self.scene.strokes(skin, camera.scale), self.scene.spots
+        rough = self._detail.rough if self._detail is not None else None
+        solid = rough if self._moving and self._slow and rough is not None else self._solid
+        fine = not self._moving and 4 * camera.width * camera.height <= _SAMPLES
+        start = time.perf_counter()
+        image = self.painter.draw(solid, camera, paint, strokes, sharper=2 if fine else 1, spots=spots)
+        if self._moving and solid is self._solid:
+            self._slow = time.perf_counter() - start > _SLOW
+        return image
+
+    def _paste(self, image: np.ndarray[Any, np.dtype[np.uint8]]) -> None:
+        height, width = image.shape[:2]
+        if self._photo is None or (self._photo.width(), self._photo.height()) != (width, height):
+            self._photo = ImageTk.PhotoImage("RGB", (width, height), master=self.canvas)
+            self.canvas.itemconfigure(self._picture, image=self._photo)
+        self._photo.paste(Image.fromarray(image))
+        self.canvas.itemconfigure(self._picture, state="normal")
+
+    def _label(self, skin: Skin) -> None:
+        camera, painter, scene = self.camera, self.painter, self.scene
+        sensors = [sensor_label(painter, camera, sensor.id, scene.sensor_line(skin, k)) for k, sensor in enumerate(skin.sensors)]
+        words = [label for label in sensors if label is not None]
+        words += piece_labels(painter, scene.owner(skin), [piece.id for piece in skin.pieces])
+        self._furniture.labels(words + seam_labels(painter, camera, scene.labels(skin)), self.theme)
+        self._furniture.axes(camera, self.theme)
+        self._furniture.scale(camera, self.theme)
+        legend = (self.session.shading, self.theme.name, camera.width, camera.height)
+        if legend != self._legend:
+            self._legend = legend
+            self._furniture.legend(self.session.shading, self.theme)
+
+    def _configured(self, event: tk.Event[tk.Misc]) -> None:
+        self._moving = self.session.skin is not None
+        self.redraw()
+
+    def _cancel(self) -> None:
+        if self._idle:
+            self.after_cancel(self._idle)
+        if self._rest:
+            self.after_cancel(self._rest)
+        self._idle = self._rest = ""
+
+    def _destroyed(self, event: tk.Event[tk.Misc]) -> None:
+        if event.widget is self:
+            self._cancel()
+            # The session outlives the view and still calls: there is nothing to draw on any more.
+            self.redraw = lambda: None  # type: ignore[method-assign]
