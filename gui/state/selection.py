@@ -17,12 +17,15 @@ class Target:
         Ids; "" where there is none.
     seam : int
         Edge id of ``skin.mesh.topology`` on a seam; -1 where there is none.
+    also : tuple of str
+        Ids of more sensors that are selected together with `sensor`; some may be gone by now.
     """
 
     face: int = -1
     piece: str = ""
     sensor: str = ""
     seam: int = -1
+    also: tuple[str, ...] = ()
 
     def __bool__(self) -> bool:
         return self.face >= 0 or bool(self.piece) or bool(self.sensor) or self.seam >= 0

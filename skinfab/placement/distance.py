@@ -107,6 +107,25 @@ def distance(one: Curves, two: Curves) -> float:
     return min(best, _pairs_distance(one, two, rest)) if len(rest) else best
 
 
+def distance_within(one: Curves, two: Curves, reach: float) -> float:
+    """As `distance` where that is less than `reach` mm, and infinite where it is not: for most pairs, two boxes tell.
+
+    Examples
+    --------
+    >>> wall, other = (Curves.of_edges(np.array([[[x, 0.0], [x, 9.0]]])) for x in (0.0, 3.0))
+    >>> distance_within(wall, other, 5.0), distance_within(wall, other, 2.0)
+    (3.0, inf)
+    """
+    if not len(one) or not len(two):
+        return math.inf
+    one = one.within(two.low.min(axis=0) - reach, two.high.max(axis=0) + reach)
+    if not len(one):
+        return math.inf
+    two = two.within(one.low.min(axis=0) - reach, one.high.max(axis=0) + reach)
+    apart = distance(one, two)
+    return apart if apart < reach else math.inf
+
+
 def path_distance(one: Path, two: Path) -> float:
     """Least distance between two paths' centre lines, mm."""
     return distance(Curves.of_segments(one.segments), Curves.of_segments(two.segments))

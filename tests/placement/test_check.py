@@ -11,7 +11,7 @@ from skinfab.errors import InputError, RefusedError
 from skinfab.material import load_material
 from skinfab.patterns.contact_spiral import ContactSpiral
 from skinfab.patterns.strain_lines import StrainLines
-from skinfab.placement.check import check_sensor, validate
+from skinfab.placement.check import Checker, check_sensor, find_faults, validate
 from skinfab.placement.sensor import Sensor
 
 MATERIAL = load_material()
@@ -163,3 +163,25 @@ def test_many_sensors_are_judged_each_by_its_own_piece_and_pattern(sheet: Callab
     said = str(refused.value).split("; ")
     assert [s.split(" mm ", 1)[1] for s in said[:2]] == ["outside piece P2, which spans 0 to 30 x 0 to 30 mm", "too close to itself"]
     assert said[2:] == ["move, turn or shrink them"]
+
+
+def test_a_checker_says_the_same_from_one_place_to_the_next(sheet: Callable) -> None:
+    """What it keeps of earlier places and pieces is not mistaken for the present."""
+    _, piece = sheet(60, 60, slit=True)
+    _, smaller = sheet(40, 60)
+    checker, neighbour = Checker(MATERIAL), put(20, 45, id="C2")
+    seen = set()
+    for k, angle in enumerate(np.linspace(0, 6, 40)):
+        sensor = put(10 + k % 9 * 6.0, 5 + k % 7 * 9.0, float(angle))
+        for ground in (piece, smaller):
+            fresh = find_faults(ground, sensor, (neighbour,), material=MATERIAL)
+            assert checker.faults(ground, sensor, (neighbour,)) == fresh
+            seen |= {f.brief.split("mm ")[-1] for f in fresh}
+    assert len(seen) == 4  # outside, at the edge, at the neighbour, across the slit: all were met
+
+
+def test_findings_name_the_other_and_have_few_words(sheet: Callable) -> None:
+    _, piece = sheet(60, 60)
+    one, two = put(10, 30), put(22, 30, id="C2")
+    (found,) = find_faults(piece, two, (one,), material=MATERIAL)
+    assert found.other == "C1" and found.text == f"C2 is {found.brief}" and found.brief.endswith("mm too close to C1")

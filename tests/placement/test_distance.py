@@ -11,7 +11,7 @@ from scipy.spatial import cKDTree
 from skinfab.paths import Arc, Line, Path
 from skinfab.patterns.contact_spiral import ContactSpiral
 from skinfab.patterns.strain_lines import StrainLines
-from skinfab.placement.distance import Curves, distance, path_distance, self_distance
+from skinfab.placement.distance import Curves, distance, distance_within, path_distance, self_distance
 
 points = st.tuples(st.floats(-20, 20), st.floats(-20, 20))
 segments = st.one_of(
@@ -113,3 +113,15 @@ def test_self_distance_against_sampling(moves: list[tuple[float, float]], apart:
     # Never below the truth by more than the sampling; never above what all pairs a little farther apart would give.
     assert exact >= between[far >= apart - 0.02].min(initial=math.inf) - 0.03
     assert exact <= between[far >= apart * 9 / 8 + 0.02].min(initial=math.inf) + 0.03
+
+
+@pytest.mark.parametrize("reach", [0.5, 3.0, 50.0])
+def test_within_reach_is_the_distance_itself(reach: float) -> None:
+    rng = np.random.default_rng(5)
+    near = 0
+    for _ in range(60):
+        one, two = (Curves.of_edges(rng.uniform(0, 12, (7, 1, 2)) + rng.uniform(-1, 1, (7, 2, 2)) + rng.uniform(0, 9, 2)) for _ in range(2))
+        apart = distance(one, two)
+        near += apart < reach
+        assert distance_within(one, two, reach) == (apart if apart < reach else np.inf)
+    assert near

@@ -1,0 +1,95 @@
+"""Whether sensors fit, at every move: which do not, and how that is said."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from gui.state.problem import Problem
+from gui.state.selection import Target
+from skinfab.errors import SkinfabError
+from skinfab.material import Material, load_material
+from skinfab.placement.check import Checker, Finding
+from skinfab.placement.sensor import Sensor
+from skinfab.skin import Skin
+
+Findings = dict[str, tuple[Finding, ...]]
+
+
+class Live:
+    """Keeps what checks have in common from one move to the next.
+
+    Attributes
+    ----------
+    findings : dict of str to tuple of Finding
+        Of every sensor of the document, as `look` found them; sensors without are left out.
+    """
+
+    def __init__(self) -> None:
+        self.findings: Findings = {}
+        self._name: str | None = None
+        self._checker: Checker | None = None
+        self._fault = ""
+        self._seen: tuple[object, ...] = ()
+
+    def look(self, skin: Skin) -> bool:
+        """Check all sensors of a document; whether there was anything new to check."""
+        now = (skin.pieces, skin.sensors, skin.material)
+        if len(now) == len(self._seen) and all(a is b for a, b in zip(now, self._seen, strict=True)):
+            return False
+        self._seen = now
+        self.findings = self.check(skin, skin.sensors, skin.sensors)
+        return True
+
+    def check(self, skin: Skin, sensors: Iterable[Sensor], others: Iterable[Sensor]) -> Findings:
+        """What is wrong with some sensors beside others."""
+        checker = self._for(skin.material)
+        if checker is None:
+            return {}
+        pieces, others, found = {p.id: p for p in skin.pieces}, tuple(others), {}
+        for sensor in sensors:
+            if sensor.piece in pieces:
+                each = tuple(checker.faults(pieces[sensor.piece], sensor, others))
+            else:
+                each = (Finding(f"{sensor.id} is on piece {sensor.piece}, which does not exist", float("inf"), sensor.id),)
+            if each:
+                found[sensor.id] = each
+        return found
+
+    def prepare(self, skin: Skin, piece: str) -> None:
+        """Before a drag: what its first move would otherwise wait for."""
+        checker = self._for(skin.material)
+        if checker is not None and any(p.id == piece for p in skin.pieces):
+            checker.prepare(skin.piece(piece))
+
+    def problems(self, skin: Skin) -> list[Problem]:
+        """The findings as lines of the problems list; of two sensors too close to each other once."""
+        if self._fault:
+            return [Problem(self._fault, "sensors")]
+        lines, said = [], set()
+        piece = {s.id: s.piece for s in skin.sensors}
+        for id, found in self.findings.items():
+            for each in found:
+                pair = frozenset((id, each.other))
+                if each.other and pair in said:
+                    continue
+                said.add(pair)
+                lines.append(Problem(f"{each.text}; move, turn or shrink it", "sensors", target=Target(piece=piece.get(id, ""), sensor=id)))
+        return lines
+
+    def _for(self, material: str) -> Checker | None:
+        if material != self._name:
+            self._name, self._checker, self._fault = material, None, ""
+            try:
+                self._checker = Checker(_load(material))
+            except SkinfabError as fault:
+                self._fault = str(fault)
+        return self._checker
+
+
+def words(found: Iterable[Finding]) -> list[str]:
+    """The worst first, without the sensor's name: they stand beside it."""
+    return [each.brief or each.text for each in sorted(found, key=lambda f: -f.amount)]
+
+
+def _load(name: str) -> Material:
+    return load_material(name)
