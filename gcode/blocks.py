@@ -65,8 +65,8 @@ def parted(body: str) -> list[str]:
         at = found.end()
     words = words[1:] if words[0][0] == "N" else words
     codes = [f"{letter}{float(number):g}" for letter, number in words if letter in "GMT"]
-    known = all(code[0] == "T" or code in _KNOWN for code in codes) and {letter for letter, _ in words} <= set("GMTXYZIJKREFSPL")
-    own_words = set(codes).isdisjoint(_TAKE_AXES) and any(letter in "PLERK" for letter, _ in words)
+    known = all(code[0] == "T" or code in _KNOWN for code in codes) and all(letter != "N" for letter, _ in words)
+    own_words = set(codes).isdisjoint(_TAKE_AXES) and any(letter not in "GMTXYZIJFS" for letter, _ in words)
     if not known or own_words or any(sum(code in group for code in codes) > 1 for group in _MODAL_GROUPS) or len(set(codes)) < len(codes):
         return [body]
     taking, pump, last = ([code for code in codes if code in group] for group in (_TAKE_AXES, _PUMP, _ENDING))

@@ -25,9 +25,10 @@ from gcode.check_waits import wait_findings
 from gcode.check_wall import Wall, wall_findings
 from gcode.emit import emit
 from gcode.geometry import Curve, Straight
+from gcode.moves import Finding, Move
 from gcode.printer import Bed, Printer
 from gcode.program import E_DECIMALS, F_DECIMALS, XY_DECIMALS, Program
-from gcode.trace import Finding, Move, trace_as_far
+from gcode.trace import trace_as_far
 from skinfab.errors import InputError
 from skinfab.tolerances import ARC_RADIUS_MM
 
@@ -111,7 +112,7 @@ def judge(
     >>> [finding.what for finding in judgement.findings], judgement.broken_off
     (['it reaches X400.0000, the bed ends at X350.0000'], 'line 4: G5 is not supported; use lines and arcs in the XY plane')
     """
-    judged, fault = trace_as_far(text, spindle=printer.spindle)
+    judged, fault = trace_as_far(text, spindle=printer.spindle, motion=printer.motion)
     laid = laid_pieces(judged, printer)
     wall = mould.wall if mould else wall
     mistaken = tuple(piece_findings(text, mould)) if mould else ()
@@ -191,7 +192,9 @@ def _ink(move: Move, printer: Printer) -> Iterator[tuple[str, str]]:
             f"E{move.e:.5f} is beyond the firmware's {printer.pump.max_e:g} mm a command, the ink is dropped in silence",
             "split the move, or raise max_e and EXTRUDE_MAXLENGTH alike",
         )
-    if move.e < 0 and move.is_planar:
+    if move.e < 0 and move.is_planar and printer.spindle:
+        yield "the pump runs backwards while the head moves, for M4 turns it", "turn it forwards by M3, or stop it by M5 before the move"
+    elif move.e < 0 and move.is_planar:
         yield (
             f"E{move.e:.5f} is negative while the head moves: the pump runs backwards",
             "make E positive; reverse the motor in the firmware",
@@ -201,6 +204,8 @@ def _ink(move: Move, printer: Printer) -> Iterator[tuple[str, str]]:
 
 
 def _speed(move: Move, printer: Printer) -> Iterator[tuple[str, str]]:
+    if move.rapid:
+        return  # the machine's own speed, and ink on it is a fault already
     if move.speed is None:
         yield "no speed F was given yet", "give F, in mm/min, on the first move"
         return

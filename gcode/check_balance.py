@@ -12,9 +12,9 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+from gcode.moves import Finding, Move, Trace
 from gcode.printer import Printer
 from gcode.program import E_DECIMALS, XY_DECIMALS
-from gcode.trace import Finding, Move, Trace
 
 #: Half a step of E, twice: that of a prime and that of its retract.
 _ROUNDING = 10**-E_DECIMALS

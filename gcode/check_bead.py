@@ -9,8 +9,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from gcode.check_ink import Pieces
+from gcode.moves import Finding, Trace
 from gcode.printer import Printer
-from gcode.trace import Finding, Trace
 from skinfab.material import load_material
 
 #: Cross-sections beyond a third or three times of what was meant are faults: an ink spreads by itself, but not so far.

@@ -6,8 +6,9 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
+from gcode.moves import Finding, Trace
 from gcode.printer import Printer
-from gcode.trace import Finding, Trace, homed_axes
+from gcode.trace import homed_axes
 from gcode.words import HEATERS, MOTORS_OFF, Command
 
 #: Words that Marlin reads on a machine of three axes; it passes over any other in silence.
@@ -31,6 +32,8 @@ WORKSPACES = ("G55", "G56", "G57", "G58", "G59", "G59.1", "G59.2", "G59.3")
 RESETS = ("M501", "M502")
 #: They run what is not in this file: another file, a macro (RepRapFirmware's M98; marlinfw.org, M23, M24, M32, M810).
 CALLS = ("M23", "M24", "M32", "M98", *(f"M{number}" for number in range(810, 820)))
+#: Of the flags of M111 (marlinfw.org): echo 1, info 2, errors 4, dry run 8, communication 16, levelling 32.
+DRY_RUN = 8
 STOPS = ("M112", "M410", "M524")
 #: Motions of the firmware's own: pattern, retract, wipe, park, sled, go to mesh point, resume, calibrate, change of filament,
 #: babystep, stow (the head may rise for it).
@@ -86,7 +89,7 @@ def command_findings(judged: Trace, printer: Printer) -> Iterator[Finding]:
         if code.startswith("T") and code != "T0":
             rules = (TOOL,)
         if rules:
-            state = State(printer, wet=command.line > first, ink_follows=command.line < last, homed=homed)
+            state = State(printer, wet=command.line >= first, ink_follows=command.line < last, homed=homed)
             for rule in rules:
                 if found := rule.when(command, state):
                     yield Finding(command.line, rule.what.format(code=code, text=found), rule.remedy)
@@ -145,8 +148,8 @@ def _steps(command: Command, _: State) -> str:
     return " and ".join(axis for axis in "XYZE" if axis in command.words)
 
 
-def _cuts_power(_: Command, state: State) -> bool:
-    """At the end of a print it is usual."""
+def _before_the_last_ink(_: Command, state: State) -> bool:
+    """At the end of a print it is usual, or does no harm."""
     return state.ink_follows
 
 
@@ -158,6 +161,20 @@ def _ends_when_idle(command: Command, state: State) -> bool:
 def _amid_the_ink(_: Command, state: State) -> bool:
     """Before it, a file may well set what the machine has; the unit is the driver's, so no value is wrong by itself."""
     return state.wet and state.ink_follows
+
+
+def _dry_run(command: Command, state: State) -> bool:
+    """Bit 3 of its flags: the head moves and E does not."""
+    return state.ink_follows and bool(int(command.words.get("S") or 0.0) & DRY_RUN)
+
+
+def _sets_amid_the_ink(command: Command, state: State) -> bool:
+    """Without words, or with those that choose how, it only tells what is set."""
+    return _amid_the_ink(command, state) and bool(command.words.keys() - {"V", "T"})
+
+
+def _microsteps(command: Command, state: State) -> bool:
+    return state.ink_follows and bool(command.words)
 
 
 def _volumetric(command: Command, _: State) -> bool:
@@ -238,7 +255,7 @@ RULES = (
         "put it at the end",
     ),
     Rule(STOPS, _always, "{code} stops the machine at once: what follows is not printed", "take it out"),
-    Rule(("M81",), _cuts_power, "M81 turns the power off before the last ink: what follows is not printed", "put it at the end"),
+    Rule(("M81",), _before_the_last_ink, "M81 turns the power off before the last ink: what follows is not printed", "put it at the end"),
     Rule(
         ("M85",),
         _ends_when_idle,
@@ -254,8 +271,39 @@ RULES = (
     Rule(
         ("M907",),
         _amid_the_ink,
-        "M907 changes the motors' current amid the ink, and a motor with too little loses steps",
+        "{code} changes the motors' current amid the ink, and a motor with too little loses steps",
         "send it before the start, not in the file",
+    ),
+    Rule(
+        ("M906",),
+        _sets_amid_the_ink,
+        "{code} changes the motors' current amid the ink, and a motor with too little loses steps",
+        "send it before the start, not in the file",
+    ),
+    Rule(
+        ("M350",),
+        _microsteps,
+        "{code} changes the microsteps: each mm told is another length",
+        "set it in the firmware before you measure",
+    ),
+    Rule(
+        ("M420", "M425"),
+        _sets_amid_the_ink,
+        "{code} changes amid the ink how the firmware corrects places: what follows lies elsewhere than what was laid",
+        "send it before the first ink",
+    ),
+    Rule(
+        ("M605",),
+        _amid_the_ink,
+        "{code} changes amid the ink which carriage is driven, and another nozzle is elsewhere",
+        "send it before the start, not in the file",
+    ),
+    Rule(("M111",), _dry_run, "{code} begins a dry run: the head moves and no ink comes", "take it out, or leave out the 8 of S"),
+    Rule(
+        ("M28",),
+        _before_the_last_ink,
+        "{code} writes what follows to a card, and nothing of it is printed",
+        "take it out",
     ),
     Rule(
         ("M92",),

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from gcode.emit import END, TITLE
+from gcode.moves import Finding, Trace
 from gcode.printer import Printer
 from gcode.program import XY_DECIMALS
-from gcode.trace import Finding, Trace, homed_axes
+from gcode.trace import homed_axes
 
 #: Axes that each home policy leaves to the file.
 HOMED = {"xyz": "XYZ", "xy": "XY", "none": ""}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from gcode.trace import Finding, Trace
+from gcode.moves import Finding, Trace
 from gcode.words import SETTING, Command
 
 #: Words that GRBL takes on a three-axis machine; any other is an error, at which a sender stops.
@@ -40,10 +40,19 @@ def grbl_findings(judged: Trace) -> Iterator[Finding]:
             yield Finding(command.line, *fault)
 
 
+def _dwell(command: Command) -> tuple[str, str] | None:
+    seconds = command.words.get("P")
+    if seconds is None:
+        return "G4 has no P, and GRBL halts there", "give P, the seconds"
+    return (f"G4 P{seconds:g} is negative, and GRBL halts there", "give P, the seconds, as zero or more") if seconds < 0 else None
+
+
 def _fault(command: Command) -> tuple[str, str] | None:
     code = command.code
     if code in WORDS:
         unknown = "".join(letter for letter in command.words if letter not in WORDS[code])
+        if code == "G4" and (fault := _dwell(command)):
+            return fault
         if "E" in unknown:
             return f"GRBL has no E axis and halts at {code} E", "let M3 S run the pump, or choose a Marlin printer"
         return (f"GRBL does not know {unknown} on {code} and halts there", "take it out") if unknown else None

@@ -8,9 +8,9 @@ from itertools import islice
 
 from gcode.clearance import Laid
 from gcode.geometry import Shape, Straight
+from gcode.moves import Finding, Move, Trace
 from gcode.printer import Printer
 from gcode.program import XY_DECIMALS
-from gcode.trace import Finding, Move, Trace
 from skinfab.tolerances import PREVIEW_CHORD_MM
 
 STEP_XY = 10**-XY_DECIMALS
@@ -21,13 +21,16 @@ def height_findings(judged: Trace, printer: Printer) -> Iterator[Finding]:
 
     A low travel is accepted as an overrun only: straight into or out of an extrusion, no longer than the profile's
     own, and clear of all ink but the bead it leaves; or along the wiping of the cleaning place, at its height. Homing
-    leaves Z unknown, and so does a file that does not say it.
+    leaves an axis unknown, and so does a file that does not say it: what leads over an unknown place must be high.
     """
+    yield from _homed_low(judged, printer)
     laid = Laid()
     for k, move in enumerate(judged.moves):
         shape = move.shape
         if move.is_planar and move.e <= 0 and move.start[2] is None:
             yield _blind(move, printer)
+        elif move.is_planar and move.e <= 0 and shape is None:
+            yield from _from_nowhere(move, printer)
         if shape is None:
             continue
         if move.e > 0:
@@ -41,6 +44,21 @@ def height_findings(judged: Trace, printer: Printer) -> Iterator[Finding]:
 def _blind(move: Move, printer: Printer) -> Finding:
     what = "it travels at an unknown height: the nozzle may stand below the mould's wall or in wet ink"
     return Finding(move.line, what, f"lift to Z{printer.heights.travel:g} first, by a move in Z alone", move.pattern)
+
+
+def _from_nowhere(move: Move, printer: Printer) -> Iterator[Finding]:
+    if (low := _lowest(move)) is not None and low < printer.heights.travel - STEP_XY:
+        what = f"it travels from or to an unknown place at Z{low:.4f}, below the travel height"
+        yield Finding(move.line, what, f"lift to Z{printer.heights.travel:g} first, by a move in Z alone", move.pattern)
+
+
+def _homed_low(judged: Trace, printer: Printer) -> Iterator[Finding]:
+    wet = min((m.line for m in judged.moves if m.e > 0 and m.is_planar), default=math.inf)
+    for home in judged.homes:
+        axes = " and ".join(home.axes.replace("Z", ""))
+        if axes and home.line > wet and home.z is not None and home.z < printer.heights.travel - STEP_XY:
+            what = f"it homes {axes} at Z{home.z:.4f}, below the travel height: the nozzle runs through what lies in its way"
+            yield Finding(home.line, what, f"lift to Z{printer.heights.travel:g} first, by a move in Z alone", home.pattern)
 
 
 def _print_height(move: Move, printer: Printer) -> Iterator[Finding]:

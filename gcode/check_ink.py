@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,14 +11,18 @@ from numpy.typing import NDArray
 from gcode.check_height import STEP_XY, bead_radius
 from gcode.clearance import chords
 from gcode.geometry import Curve
+from gcode.moves import Finding, Move, Trace
 from gcode.printer import Printer
-from gcode.trace import Finding, Move, Trace
 from skinfab.tolerances import INK_CHORD_MM
 
 #: Within a stroke, ink may be near to what was laid less than so many bead radii before, counted along the path: there
 #: it turns. A half turn whose ends are a radius apart takes pi/2 of it, a corner of 30 degrees less than 4; a sharper one
 #: lies on itself.
 TURN = 4.0
+
+#: Where a stroke ends upon its own beginning, as a ring does that closes, its last so many bead radii may be near to its first: a
+#: ring that ends on its start meets it within one radius, one with a corner of 42 degrees there within one and a half.
+CLOSE = 1.5
 
 #: Pieces that are compared among themselves at once: even where all lie on one heap, their pairs stay a small table.
 _AT_ONCE = 1024
@@ -61,7 +65,8 @@ def ink_findings(judged: Trace, laid: Pieces) -> Iterator[Finding]:
     """Moves that lay ink upon ink or come down into it, in their order; each is compared with faultless ink before it.
 
     Beads of two strokes must not touch. Within a stroke, where the rows of a pad lie closer than a bead is wide, no
-    centre line may enter a bead laid before, but for the neighbour along the path (`TURN`). Beads are taken as round.
+    centre line may enter a bead laid before, but for the neighbour along the path (`TURN`), and the end of a ring upon its
+    start (`CLOSE`). Beads are taken as round.
 
     Examples
     --------
@@ -193,7 +198,47 @@ def _distances(pieces: Pieces, later: NDArray[np.int64], earlier: NDArray[np.int
     asked = (earlier < later) & (pieces.radius[earlier] > 0) & (need > 0) & (pieces.end[later] - pieces.begin[earlier] > apart)
     asked = np.flatnonzero(asked)
     near[asked] = distance_apart(pieces[earlier[asked]], pieces[later[asked]], apart[asked])
+    _let_close(pieces, later, earlier, near, np.flatnonzero(same & (near < need)), apart)
     return near, need
+
+
+def _let_close(
+    pieces: Pieces,
+    later: NDArray[np.int64],
+    earlier: NDArray[np.int64],
+    near: NDArray[np.float64],
+    met: NDArray[np.int64],
+    apart: NDArray[np.float64],
+) -> None:
+    """Measure the pairs `met` anew without what `CLOSE` lets be: the end of a stroke against its own beginning.
+
+    All other pairs of places have their later one before that end, or their earlier one behind that beginning.
+    """
+    length = pieces.end[np.searchsorted(pieces.stroke, pieces.stroke[later[met]], side="right") - 1]
+    spare = CLOSE * pieces.radius[earlier[met]]
+    ring = np.flatnonzero((pieces.end[later[met]] > length - spare) & (pieces.begin[earlier[met]] < spare))
+    met, length, spare = met[ring], length[ring], spare[ring]
+    first, last = pieces[earlier[met]], pieces[later[met]]
+    near[met] = np.minimum(
+        _distance_if_any(first, _within(last, -np.inf, length - spare), apart[met]),
+        _distance_if_any(_within(first, spare, np.inf), last, apart[met]),
+    )
+
+
+def _within(pieces: Pieces, low: NDArray[np.float64] | float, high: NDArray[np.float64] | float) -> Pieces:
+    """What of each lies between two places along its stroke; its end is before its beginning where nothing does."""
+    begin, end = np.maximum(pieces.begin, low), np.minimum(pieces.end, high)
+    way = (pieces.end - pieces.begin)[:, None]
+    along = pieces.ends[:, 1] - pieces.ends[:, 0]
+    cut = [pieces.ends[:, 0] + _ratio((at - pieces.begin)[:, None] * along, np.broadcast_to(way, along.shape)) for at in (begin, end)]
+    return replace(pieces, ends=np.stack(cut, axis=1), begin=begin, end=end)
+
+
+def _distance_if_any(a: Pieces, b: Pieces, apart: NDArray[np.float64]) -> NDArray[np.float64]:
+    near = np.full(len(a), np.inf)
+    some = np.flatnonzero((a.begin < a.end) & (b.begin < b.end) & (b.end - a.begin > apart))
+    near[some] = distance_apart(a[some], b[some], apart[some])
+    return near
 
 
 def distance_apart(a: Pieces, b: Pieces, apart: NDArray[np.float64]) -> NDArray[np.float64]:

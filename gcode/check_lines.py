@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator
 from functools import reduce
 
-from gcode.trace import Finding
+from gcode.moves import Finding
 from gcode.words import lines_of
 
 _SUMMED = re.compile(r"\s*([Nn]\s*\d+[^*]*)\*\s*(\d+)")

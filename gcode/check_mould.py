@@ -12,9 +12,9 @@ from gcode.check_ink import Pieces
 from gcode.check_wall import Wall, wall_of
 from gcode.emit import TITLE
 from gcode.geometry import Point
+from gcode.moves import Finding, Trace
 from gcode.printer import Printer
 from gcode.seat import seat
-from gcode.trace import Finding, Trace
 from gcode.words import lines_of
 from skinfab.errors import InputError
 from skinfab.flatten.locate import Locator

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 
 from gcode.check_waits import STOPPED
 from gcode.emit import TITLE, emit_comment
+from gcode.moves import Trace
 from gcode.printer import Printer
-from gcode.trace import Trace
 
 #: Commands that GRBL halts at, though every file for Marlin has some of them.
 MARLIN = frozenset({"M82", "M83", "M104", "M106", "M107", "M109", "M140", "M190", "M220", "M221", "M302", "M900"})

@@ -6,8 +6,9 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from gcode.moves import Finding, Trace
 from gcode.printer import Printer
-from gcode.trace import MM_PER_INCH, Finding, Trace
+from gcode.trace import MM_PER_INCH
 from skinfab.tolerances import SETTING_FRACTION
 
 

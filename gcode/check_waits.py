@@ -6,19 +6,20 @@ import math
 from bisect import bisect_left
 from collections.abc import Iterator
 
+from gcode.moves import Finding, Trace
 from gcode.printer import Printer
-from gcode.trace import Finding, Trace
 from gcode.words import Command
+from skinfab.tolerances import WET_DWELL_S
 
-#: Who or what is waited for, for any length of time (marlinfw.org, M0, M25 and M226); GRBL knows the first two.
-STOPPED = {"M0": "a click", "M1": "a click", "M25": "someone to resume", "M226": "a pin"}
+#: Who or what is waited for, for any length of time (marlinfw.org, M0, M25 and M226; M601 is Prusa's); GRBL knows the first two.
+STOPPED = {"M0": "a click", "M1": "a click", "M25": "someone to resume", "M226": "a pin", "M601": "someone to resume"}
 
 #: They wait for a temperature: with S while it is lower, with R in any case, so with some sensors at S0 too.
 TEMPERATURE = frozenset({"M109", "M116", "M190", "M191"})
 
 
 def wait_findings(judged: Trace, printer: Printer) -> Iterator[Finding]:
-    """Waits for somebody before the last ink, and any wait between two moves of one stroke.
+    """Waits for somebody before the last ink, any wait between two moves of one stroke, and a dwell the silicone does not stand.
 
     A stroke ends where the nozzle lifts: a way at print height without ink does not end it. A dwell after a lift, after
     the last ink before one, or before the ink is none of these.
@@ -43,7 +44,8 @@ def wait_findings(judged: Trace, printer: Printer) -> Iterator[Finding]:
         code = command.code
         if code not in STOPPED and code not in TEMPERATURE and code != "G4":
             continue
-        if not first < command.line < last:
+        # On a line of several codes the head moves before M0 stops it.
+        if not first <= command.line < last:
             continue
         if code in STOPPED:
             if printer.spindle is None or code in ("M0", "M1"):
@@ -51,6 +53,10 @@ def wait_findings(judged: Trace, printer: Printer) -> Iterator[Finding]:
                 yield Finding(command.line, what, "take it out")
             continue
         after = bisect_left(lines, command.line)
+        if code == "G4" and (seconds := _seconds(command, printer)) > (most := _longest(printer)):
+            what = f"G4 waits {seconds:g} s in the midst of the ink, where {most:g} is the most, and the silicone sets meanwhile"
+            yield Finding(command.line, what, "shorten it, or take it out", ways[after].pattern)
+            continue
         if not (after_ink[after - 1] and before_ink[after]):
             continue
         if code == "G4" and (seconds := _seconds(command, printer)) > 0:
@@ -63,6 +69,11 @@ def wait_findings(judged: Trace, printer: Printer) -> Iterator[Finding]:
 
 def _is_low(z: float | None, printer: Printer) -> bool:
     return z is not None and z <= printer.heights.print_max
+
+
+def _longest(printer: Printer) -> float:
+    """The longest dwell, s; one that the profile itself asks for is meant."""
+    return max(WET_DWELL_S, printer.process.pause, printer.cleaning.seconds if printer.cleaning else 0.0)
 
 
 def _held(lays: list[bool], lifts: list[bool]) -> list[bool]:

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from gcode.geometry import Point
+from gcode.moves import Finding, Home, Move, Trace
 from gcode.printer import Nozzle, Printer
 from gcode.program import XY_DECIMALS
-from gcode.trace import Finding, Move, Trace
 from skinfab.material import Material
 from skinfab.mould import FREEBOARD_MM
 from skinfab.paths import Line, Segment
@@ -84,6 +84,7 @@ def nozzle_margin(printer: Printer, material: Material) -> float:
 
 def wall_findings(judged: Trace, wall: Wall, nozzle: Nozzle) -> Iterator[Finding]:
     """Findings about moves that come too near to the wall, in the order of the moves."""
+    yield from _unseen(judged, wall)
     low = [(move, z) for move in judged.moves if (z := _lowest(move)) is not None and z < wall.top - _STEP and _known(move)]
     if not low:
         return
@@ -98,6 +99,20 @@ def wall_findings(judged: Trace, wall: Wall, nozzle: Nozzle) -> Iterator[Finding
             room, need = wall.room([_segment(move)]), needed_room(wall, nozzle, z)
             if room < need - _STEP:
                 yield _finding(move, z, room, need, wall, nozzle)
+
+
+def _unseen(judged: Trace, wall: Wall) -> Iterator[Finding]:
+    """Ways below the wall's top that nobody knows: they may run across it."""
+    remedy = f"lift to Z{wall.top:g} or more before it"
+    blind = [m for m in judged.moves if m.is_planar and m.shape is None and m.e <= 0]
+    for line, z, pattern in [*((m.line, _lowest(m), m.pattern) for m in blind), *((h.line, h.z, h.pattern) for h in _homes_flat(judged))]:
+        if z is not None and z < wall.top - _STEP:
+            what = f"at Z{z:.2f} it runs from or to an unknown place, maybe across the mould's wall, which stands {wall.top:g} mm high"
+            yield Finding(line, what, remedy, pattern)
+
+
+def _homes_flat(judged: Trace) -> list[Home]:
+    return [home for home in judged.homes if home.axes != "Z"]
 
 
 def _near(moves: list[Move], wall: Wall, room: float) -> list[int]:

@@ -13,9 +13,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from gcode.check_height import at_cleaning_place, bead_radius
 from gcode.geometry import Curve, Point, Shape, Straight, joined_box
+from gcode.moves import Move, Trace
 from gcode.printer import Printer
 from gcode.program import CLEAN, PRINT_OVERRUN, XY_DECIMALS
-from gcode.trace import Move, Trace, trace
+from gcode.trace import trace
 from skinfab.files import atomic_write
 
 #: What the head does, the colour of it, and its words in the legend; drawn in this order. The eight colours of Okabe and Ito
@@ -130,7 +131,7 @@ def draw_toolpath(
     InputError
         A line of the text cannot be read, or the file cannot be written.
     """
-    drawn = list(strokes(trace(text, spindle=printer.spindle), printer))
+    drawn = list(strokes(trace(text, spindle=printer.spindle, motion=printer.motion), printer))
     wall = np.zeros((0, 2, 2)) if outline is None else np.asarray(outline, dtype=float) + shift
     (x0, y0), (x1, y1) = _shown(drawn, wall)
     used = [role for role in ROLES if any(s.role == role for s in drawn)]

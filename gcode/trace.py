@@ -7,104 +7,25 @@ is an InputError that names the line.
 from __future__ import annotations
 
 import math
-import re
-from dataclasses import dataclass, field, replace
-from typing import TypeAlias
+from dataclasses import replace
 
-from gcode.geometry import Curve, Point, Shape, Straight
-from gcode.printer import Spindle
+from gcode.geometry import Point
+from gcode.moves import Finding, Home, Move, Place, Trace
+from gcode.printer import Motion, Spindle
 from gcode.words import MODAL, SETTING, Command, read_commands
 from skinfab.errors import InputError
 
-Place: TypeAlias = tuple[float | None, float | None, float | None]  # machine x, y, z in mm; None where nobody knows
-
-#: Marlin's MAX_CMD_SIZE: what is beyond is cut off in silence.
-LINE_BYTES = 96
+#: What a line may have of what counts (`Command.size`): Marlin's MAX_CMD_SIZE and GRBL's LINE_BUFFER_SIZE, each without the
+#: zero at its end. Marlin cuts the rest off in silence, GRBL refuses the line (its error 11).
+MARLIN_LINE, GRBL_LINE = 95, 79
 MM_PER_INCH = 25.4
 
 
-@dataclass(frozen=True)
-class Finding:
-    """One thing wrong with a file: where (line from 1, 0 for the file as a whole), what, and what to change."""
-
-    line: int
-    what: str
-    remedy: str
-    pattern: str = ""
-
-    @property
-    def kind(self) -> str:
-        """What it says but for the numbers: the same for all findings of one sort."""
-        return re.sub(r"-?\d[\d.]*", "#", self.what)
-
-    def __str__(self) -> str:
-        where = f"line {self.line}" if self.line else "file"
-        return f"{where}{f', pattern {self.pattern}' if self.pattern else ''}: {self.what}; {self.remedy}"
-
-
-@dataclass(frozen=True, slots=True)
-class Move:
-    """One motion command.
-
-    Parameters
-    ----------
-    line : int
-    start, end : (x, y, z), mm
-        None for an axis whose place nobody knows yet.
-    centre : (x, y) mm, or None for a straight move
-    clockwise : bool
-    e : float, mm
-        Change of E, positive forward.
-    speed : float or None, mm/s
-        None before the first F.
-    pattern : str
-        After the last comment ``pattern NAME``.
-    shape : Straight or Curve, or None
-        The motion in the plane; None where there is none or its start is unknown. It follows from the others.
-    """
-
-    line: int
-    start: Place
-    end: Place
-    centre: Point | None
-    clockwise: bool
-    e: float
-    speed: float | None
-    pattern: str
-    shape: Shape | None = field(init=False, compare=False, repr=False)
-
-    def __post_init__(self) -> None:
-        # Asked for by every rule, so it is made once; slots keep a hundred thousand moves small.
-        object.__setattr__(self, "shape", self._shape())
-
-    def _shape(self) -> Shape | None:
-        if self.start[0] is None or self.start[1] is None or self.end[0] is None or self.end[1] is None:
-            return None
-        start, end = (self.start[0], self.start[1]), (self.end[0], self.end[1])
-        if self.centre is not None:
-            return Curve(start, end, self.centre, self.clockwise)
-        return Straight(start, end) if start != end else None
-
-    @property
-    def is_planar(self) -> bool:
-        """It moves in x or y, as far as anyone knows."""
-        return self.centre is not None or self.start[:2] != self.end[:2]
-
-
-@dataclass(frozen=True)
-class Trace:
-    """Moves of a text, the faults of its wording, and all its commands (comments alone have the code "")."""
-
-    moves: tuple[Move, ...]
-    faults: tuple[Finding, ...]
-    commands: tuple[Command, ...]
-
-
-def trace(text: str, *, spindle: Spindle | None = None) -> Trace:
+def trace(text: str, *, spindle: Spindle | None = None, motion: Motion | None = None) -> Trace:
     """Follow a text as Marlin would, or as GRBL where a spindle is the pump.
 
     With a `spindle`, E of a move is what the pump gives while it lasts, mm^3; a wait with the pump on is a move
-    without a way.
+    without a way. `motion` says how fast GRBL's G0 goes; without it the speed of a G0 is None.
 
     Raises
     ------
@@ -117,15 +38,15 @@ def trace(text: str, *, spindle: Spindle | None = None) -> Trace:
     >>> t.moves[1].shape.length.__round__(6), t.faults
     (3.141593, ())
     """
-    judged, fault = trace_as_far(text, spindle=spindle)
+    judged, fault = trace_as_far(text, spindle=spindle, motion=motion)
     if fault:
         raise fault
     return judged
 
 
-def trace_as_far(text: str, *, spindle: Spindle | None = None) -> tuple[Trace, InputError | None]:
+def trace_as_far(text: str, *, spindle: Spindle | None = None, motion: Motion | None = None) -> tuple[Trace, InputError | None]:
     """As `trace`, up to the line that cannot be read or followed, and what is wrong with it."""
-    head, commands, fault = _Head(spindle), [], None
+    head, commands, fault = _Head(spindle, motion), [], None
     try:
         for told in read_commands(text, blocks=spindle is not None):
             command = head.continued(told)
@@ -133,7 +54,7 @@ def trace_as_far(text: str, *, spindle: Spindle | None = None) -> tuple[Trace, I
             commands.append(command)
     except InputError as stopped:
         fault = stopped
-    return Trace(tuple(head.moves), tuple(head.faults), tuple(commands)), fault
+    return Trace(tuple(head.moves), tuple(head.faults), tuple(commands), tuple(head.homes)), fault
 
 
 def homed_axes(command: Command) -> str:
@@ -150,13 +71,17 @@ def homed_axes(command: Command) -> str:
 class _Head:
     """Marlin's modes and the head's place."""
 
-    def __init__(self, spindle: Spindle | None) -> None:
+    def __init__(self, spindle: Spindle | None, motion: Motion | None) -> None:
         self.spindle = spindle
+        self.limits = motion
         self.flow = 0.0  # of that spindle, mm^3/s, backward negative
         self.spindle_s = 0.0  # the last S
         self.turn = "M5"  # which way it turns
         self.motion = "G0" if spindle else ""  # what a line without a G goes on with; GRBL starts with G0
         self.moves: list[Move] = []
+        self.homes: list[Home] = []
+        self.long_line = 0  # the last that was told to be too long
+        self.ended: Command | None = None  # an M2 or M30
         self.faults: list[Finding] = []
         self.place: list[float | None] = [None, None, None]  # of the machine, mm
         self.shift = [0.0, 0.0, 0.0]  # machine place minus the place as written, set by G92
@@ -186,9 +111,9 @@ class _Head:
     def follow(self, command: Command) -> None:
         if command.comment.startswith("pattern ") and not command.code:
             self.pattern = command.comment.removeprefix("pattern ").strip()
-        if command.code and command.size > LINE_BYTES:
-            self._fault(command, f"it is {command.size} bytes long, Marlin cuts at {LINE_BYTES}", "shorten its numbers or its comment")
         code = command.code
+        if code and command.size > (GRBL_LINE if self.spindle else MARLIN_LINE):
+            self._too_long(command)
         if self.spindle and "S" in command.words and code in ("G0", "G1", "G2", "G3", SETTING):
             self._turn_pump(command, self.spindle)
         if code in ("G0", "G1", "G2", "G3"):
@@ -212,6 +137,9 @@ class _Head:
             self._home(command)
         elif self.spindle and code in ("M3", "M4", "M5", "M2", "M30"):
             self._turn_pump(command, self.spindle)
+            if code in ("M2", "M30"):
+                # What GRBL resets there; units, F and offsets stay.
+                self.relative, self.motion, self.ended = False, "G1", command
         elif self.spindle and code == "G4" and self.flow:
             self._pump_at_rest(command)
         elif code in ("G5", "G18", "G19"):
@@ -219,6 +147,18 @@ class _Head:
 
     def _fault(self, command: Command, what: str, remedy: str) -> None:
         self.faults.append(Finding(command.line, what, remedy, self.pattern))
+
+    def _too_long(self, command: Command) -> None:
+        if command.line == self.long_line:
+            return  # another code of the same line
+        self.long_line = command.line
+        if self.spindle:
+            remedy = "shorten its numbers, or give each code a line of its own"
+            what = f"it is {command.size} characters long without blanks and comments, GRBL takes {GRBL_LINE} and halts there"
+        else:
+            remedy = "shorten its numbers"
+            what = f"it is {command.size} bytes long without its comment, Marlin cuts behind {MARLIN_LINE}"
+        self._fault(command, what, remedy)
 
     def _distance_mode(self, command: Command) -> None:
         self.relative = command.code == "G91"
@@ -259,20 +199,47 @@ class _Head:
         centre = self._centre(command, end) if command.code in ("G2", "G3") else None
         if centre is not None or e or any(axis in command.words for axis in "XYZ"):
             start = (self.place[0], self.place[1], self.place[2])
-            move = Move(command.line, start, (end[0], end[1], end[2]), centre, command.code == "G2", e, self.speed, self.pattern)
+            to = (end[0], end[1], end[2])
+            rapid = self.spindle is not None and command.code == "G0"
+            speed = self._rapid_speed(start, to) if rapid else self.speed
+            adrift = self.relative and any(axis in command.words and value is None for axis, value in zip("XY", end, strict=False))
+            move = Move(command.line, start, to, centre, command.code == "G2", e, speed, self.pattern, rapid, adrift)
+            if self.ended:
+                self._moves_behind_the_end(command, self.ended)
+            if rapid and self.flow:
+                self._fault(
+                    command, "the pump runs while G0 moves as fast as the machine can, whatever F says", "write G1 with F, or M5 before it"
+                )
             self.moves.append(replace(move, e=self._pumped(move)) if self.spindle else move)
         self.place = end
 
+    def _moves_behind_the_end(self, command: Command, ended: Command) -> None:
+        self._fault(command, f"it moves behind the {ended.code} of line {ended.line}, where many senders stop", "put the end last")
+        self.ended = None  # told once
+
+    def _rapid_speed(self, start: Place, end: Place) -> float | None:
+        """Of GRBL's G0, mm/s: X and Y by the one limit, Z by the other; a way nobody knows is taken for one in X or Y."""
+        if self.limits is None:
+            return None
+        x, y, rise = (abs(b - a) if a is not None and b is not None else 0.0 for a, b in zip(start, end, strict=True))
+        flat = math.hypot(x, y)
+        seconds = max(flat / self.limits.max_speed, rise / self.limits.z_speed)
+        return math.hypot(flat, rise) / seconds if seconds > 0 else self.limits.max_speed
+
     def _turn_pump(self, command: Command, spindle: Spindle) -> None:
-        self.spindle_s = self.spindle_s if (s := self._number(command, "S")) is None else s
-        if self.spindle_s < 0 or self.spindle_s > spindle.s_max:
-            self._fault(command, f"S{self.spindle_s:g} is not within 0 and the spindle's {spindle.s_max:g}", "lower the flow, or raise $30")
+        s = self._number(command, "S")
+        if s is not None and s < 0:
+            self._fault(command, f"S{s:g} is negative, and GRBL halts there", "make S positive; M4 turns the pump back")
+        elif s is not None:
+            self.spindle_s = s
+            if s > spindle.s_max:
+                self._fault(command, f"S{s:g} is not within 0 and the spindle's {spindle.s_max:g}", "lower the flow, or raise $30")
         self.turn = command.code if command.code.startswith("M") else self.turn
         sign = {"M3": 1.0, "M4": -1.0}.get(self.turn, 0.0)
         self.flow = sign * self.spindle_s / spindle.s_per_flow
 
     def _pump_at_rest(self, command: Command) -> None:
-        seconds = self._number(command, "P") or 0.0
+        seconds = max(command.words.get("P") or 0.0, 0.0)  # what else it may be is a fault of its own
         place = (self.place[0], self.place[1], self.place[2])
         self.moves.append(Move(command.line, place, place, None, False, self.flow * seconds, abs(self.flow), self.pattern))
 
@@ -348,6 +315,8 @@ class _Head:
             self.shift[k] = here - value * self.scale
 
     def _home(self, command: Command) -> None:
+        z, lift = self.place[2], (command.words.get("R") or 0.0) * self.scale  # R: it rises by so much before (Marlin)
+        self.homes.append(Home(command.line, homed_axes(command), None if z is None else z + lift, self.pattern))
         for axis in homed_axes(command):
             # Where the end stops are is the machine's affair: the place is known to it, not to the text.
             self.place["XYZ".index(axis)] = None

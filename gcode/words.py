@@ -23,12 +23,32 @@ MOTORS_OFF = frozenset({"M18", "M84"})
 
 #: Commands whose words are read; any other line (messages, fans) is passed over as it stands.
 READ = HEATERS | SETTINGS | MOTORS_OFF | {"G0", "G1", "G2", "G3", "G4", "G5", "G20", "G21", "G28", "G90", "G91", "G92"}
-READ |= {"M3", "M4", "M5", "M82", "M83", "M85", "M206", "M218", "M220", "M221", "M280", "M302", "M401", "M900"}
+READ |= {
+    "M3",
+    "M4",
+    "M5",
+    "M82",
+    "M83",
+    "M85",
+    "M206",
+    "M218",
+    "M220",
+    "M221",
+    "M111",
+    "M280",
+    "M302",
+    "M350",
+    "M401",
+    "M420",
+    "M425",
+    "M900",
+    "M906",
+}
 #: Codes of lines without a G, M or T: one that goes on with the last motion, and one that sets F or S and moves nothing.
 MODAL, SETTING = "X", "F"
 
-_FLAGS = MOTORS_OFF | {"G28"}
-_TAKE_T = HEATERS | SETTINGS | {"M206", "M218", "M221", "M900"}
+_FLAGS = MOTORS_OFF | {"G28", "M420", "M425"}
+_TAKE_T = HEATERS | SETTINGS | {"M206", "M218", "M221", "M420", "M900", "M906"}
 
 #: A line beyond this is not G-code, and a file beyond that is not a skin's.
 LINE_LIMIT, FILE_LIMIT = 4096, 256 * 2**20
@@ -41,11 +61,15 @@ _WORD = re.compile(r"\s*([A-Z])\s*([-+]?(?:\d+\.?\d*|\.\d+))?", re.IGNORECASE)
 _PLAIN = re.compile(r"(?:\s*[A-FH-LN-SU-Z]\s*[-+]?(?:\d{1,99}(?:\.\d{0,99})?|\.\d{1,99}))*\s*")
 _PLAIN_WORD = re.compile(r"([A-Z])\s*([-+.\d]+)")
 _BRACKETS = re.compile(r"\([^()]*\)")
+_NOT_KEPT = re.compile(r"[\s/]+")
 
 
 @dataclass(frozen=True, slots=True)
 class Command:
-    """One command line: `line` counts from 1, `code` is normalised ("G2" for "G02"), `size` is in bytes."""
+    """One command line: `line` counts from 1, `code` is normalised ("G2" for "G02"), `size` is what the firmware keeps of it.
+
+    Marlin keeps the bytes before a comment, GRBL (`blocks`) what is no blank, no comment and no ``/`` (its protocol.c).
+    """
 
     line: int
     code: str
@@ -120,12 +144,19 @@ def read_commands(text: str, *, blocks: bool = False) -> Iterator[Command]:
         body = body.partition("*")[0].strip()
         if not body or body == "%":
             if mark:
-                yield Command(line, "", {}, comment.strip(), len(raw if raw.isascii() else raw.encode()))
+                yield Command(line, "", {}, comment.strip(), 0)
             continue
-        size = len(raw if raw.isascii() else raw.encode())
+        size = _kept(raw, blocks=blocks)
         for part in parted(body) if blocks else (body,):
             code, words = _command(part, line)
             yield Command(line, code, words, comment.strip(), size)
+
+
+def _kept(raw: str, *, blocks: bool) -> int:
+    body = raw.partition(";")[0].rstrip()
+    if blocks:
+        body = _NOT_KEPT.sub("", _BRACKETS.sub("", body))
+    return len(body if body.isascii() else body.encode())
 
 
 def _command(body: str, line: int) -> tuple[str, dict[str, float | None]]:

@@ -35,6 +35,10 @@ INK_CHORD_MM = 0.005
 #: A limit that a file sets is the profile's own if it differs by less: both are written with a few digits.
 SETTING_FRACTION = 1e-4
 
+#: No single dwell amid the ink is longer than this, s: Ecoflex 00-30 pours for 45 minutes at room temperature by its maker's sheet
+#: (longer with a retarder, shorter where it is warm), and a third of that is taken from all that is still to be printed.
+WET_DWELL_S = 900.0
+
 #: Least slack of a triangle inequality, as a fraction of the mean edge: needles below it are mollified.
 MOLLIFY = 1e-9
 

@@ -179,7 +179,8 @@ def _print(job: PrintJob, recipe: Recipe, material: Material) -> list[str]:
 
 
 def _wire(job: PrintJob, recipe: Recipe) -> str:
-    slots = ", ".join(f"{s.sensor}-{s.terminal} by ({s.at[0]:.1f}, {s.at[1]:.1f})" for s in job.slots)
+    places = (s.at.round(1) + 0.0 for s in job.slots)  # no minus before a zero
+    slots = ", ".join(f"{s.sensor}-{s.terminal} by ({x:.1f}, {y:.1f})" for s, (x, y) in zip(job.slots, places, strict=True))
     return (
         f"{job.piece}: once cured and still in the mould, pierce a wire stripped at its end into each pad, lay it straight to its slot and "
         f"out through it: {slots} (wire by slot, x and y in mm from the piece's origin in flat.svg). "

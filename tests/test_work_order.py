@@ -120,3 +120,9 @@ def test_glued_where_the_profile_names_a_glue() -> None:
     assert work_steps(recipe({"P1": 10.0}, material), material)[-1].endswith("hold it on the object with silicone sealant DOWSIL 744.")
     worn = replace(material, adhesive="")
     assert work_steps(recipe({"P1": 10.0}, worn), worn)[-1].endswith(f"bond it with {material.bond}.")
+
+
+def test_no_place_is_minus_zero() -> None:
+    slot = replace(SLOT, at=np.array([-0.04, 120.6]))
+    (wire,) = (step for step in work_steps(WEIGHED, MATERIAL, jobs=[replace(JOBS[0], slots=[slot])]) if "pierce" in step)
+    assert "C1-2 by (0.0, 120.6)" in wire

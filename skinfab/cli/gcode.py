@@ -14,8 +14,8 @@ from skinfab.errors import InputError, RefusedError
 if TYPE_CHECKING:
     from gcode.check import Judgement
     from gcode.check_mould import Mould
+    from gcode.moves import Finding
     from gcode.printer import Printer
-    from gcode.trace import Finding
     from gcode.write import PieceGcode
     from skinfab.skin import Skin
 

@@ -53,7 +53,8 @@ def test_a_sound_file_has_no_finding(planned: Plan, printer: Printer) -> None:
         ("G1 E5 F3000\nG1 X110 Y100 E40 F240", 8, "limit of the E axis"),
         ("G3 X100.2 Y100 I0.1 J0 E0.3 F600", 8, "v^2 <= a R"),
         ("G1 X110 Y100 E40 F240\nG28", 9, "homes Z"),
-        ("G1 X110 Y100 E40 F240 ;" + 80 * "x", 8, "bytes long"),
+        ("G1 X110 Y100 E40 F240" + 80 * " " + "S0", 8, "bytes long"),
+        ("G1 X110 Y100 E40 F240 ;" + 80 * "x", 0, None),
     ],
 )
 def test_planted_faults(body: str, line: int, says: str | None, printer: Printer) -> None:

@@ -177,12 +177,42 @@ INK_AND_INK = SOUND.removesuffix("G0 Z10 F300\n") + "G0 Z10 F300\nG0 X100 Y110 F
         ("M18", "frees the motors"),
         ("M81", "turns the power off"),
         ("M907 E50", "changes the motors' current"),
+        ("M906 I1 T0 E800", "changes the motors' current"),
+        ("M111 S8", "begins a dry run"),
+        ("M111 S14", "begins a dry run"),
+        ("M28 other.gco", "writes what follows to a card"),
+        ("M350 X16 Y16", "changes the microsteps"),
+        ("M420 V S1", "how the firmware corrects places"),
+        ("M420 S1 Z10", "how the firmware corrects places"),
+        ("M425 X Z F1", "how the firmware corrects places"),
+        ("M605 S2", "which carriage is driven"),
+        ("M601", "waits for someone to resume"),
+        ("G4 S901", "waits 901 s in the midst of the ink, where 900 is the most"),
+        ("G4 P901000", "waits 901 s in the midst of the ink"),
     ],
 )
 def test_in_the_midst_of_the_ink_and_after_it(printer: Printer, line: str, says: str) -> None:
     (fault,) = check_text(INK_AND_INK.format(wet="", after=line + "\n"), printer)
     assert fault.line == 8 and says in fault.what
     assert not check_text(INK_AND_INK.format(wet="", after="") + line + "\n", printer)
+
+
+@pytest.mark.parametrize(
+    "line", ["M906", "M111", "M111 S7", "M111 S38", "M350", "M420", "M420 V", "M420 V T1", "M425", "G4 S900", "M29", "M928 log.txt"]
+)
+def test_what_only_tells_passes_amid_the_ink(printer: Printer, line: str) -> None:
+    assert not check_text(INK_AND_INK.format(wet="", after="G0 Z10 F300\n" + line + "\n"), printer)
+
+
+@pytest.mark.parametrize("line", ["M420 S1", "M420 S1 Z10", "M425 F1 S0", "M605 S1", "M906 X800 E400", "M111 S0", "G4 S2000", "M601"])
+def test_what_is_usual_before_the_ink_passes(printer: Printer, line: str) -> None:
+    assert not check_text(INK_AND_INK.format(wet="", after="").replace("M83", f"M83\n{line}"), printer)
+
+
+@pytest.mark.parametrize("line", ["M111 S8", "M28 a.gco", "M350 E16"])
+def test_what_spoils_the_ink_before_it_begins(printer: Printer, line: str) -> None:
+    (fault,) = check_text(INK_AND_INK.format(wet="", after="").replace("M83", f"M83\n{line}"), printer)
+    assert fault.line == 3
 
 
 def test_motors_may_rest_before_they_are_homed(printer: Printer) -> None:

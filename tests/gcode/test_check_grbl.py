@@ -4,6 +4,7 @@ import pytest
 
 from gcode.check import check_text
 from gcode.printer import load_printer
+from gcode.trace import trace
 
 INK = "M3 S242\nG1 X{0} F300\nM5\nG1 Z10\n"
 HEAD = "G21\nG90\nG1 Z10 F300\nG1 X50 Y50\nG1 Z1.6\n"
@@ -45,3 +46,78 @@ def test_planted_faults(line: str, says: str) -> None:
     # After G28 nobody knows the height, which is told at the next travel.
     (at, what), *more = found(line + "\n")
     assert at == 10 and says in what and ["unknown height" in told for _, told in more] == [True] * (line == "G28")
+
+
+RAPID = "G21 G17 G90 G94\nM5\nG0 Z10\nG0 X50 Y50\nG0 Z1.6\nM3 S100\nG1 X60 F200\nM5\nG0 Z10\nM2\n"
+
+
+def told(text: str) -> list[tuple[int, str]]:
+    return [(f.line, f.what) for f in check_text(text, load_printer("generic-grbl"))]
+
+
+def test_g0_needs_no_f() -> None:
+    assert told(RAPID) == []
+    assert told(RAPID.replace("G0 Z1.6", "G0 Z1.6 F200").replace("X60 F200", "X60")) == []  # F of a G0 line is kept
+    assert told(RAPID.replace("G0 Z10\nG0 X50", "G0 Z10 F99999\nG0 X50")) == []  # and is not the G0's
+    assert (7, "no speed F was given yet") in told(RAPID.replace("X60 F200", "X60"))
+
+
+def test_the_pump_rests_during_g0() -> None:
+    found = told(RAPID.replace("M5\nG0 Z10\nM2", "G0 X70\nM5\nG0 Z10\nM2"))
+    assert (8, "the pump runs while G0 moves as fast as the machine can, whatever F says") in found
+    assert not [what for _, what in found if "limit of" in what or "no speed" in what]
+    assert told(RAPID.replace("M5\nG0 Z10\nM2", "S0\nG0 Z10\nM2")) == []
+
+
+@pytest.mark.parametrize(
+    ("line", "says"),
+    [
+        ("G4", "G4 has no P, and GRBL halts there"),
+        ("G4 P", "G4 has no P, and GRBL halts there"),
+        ("G4 P-1", "G4 P-1 is negative, and GRBL halts there"),
+        ("M3 S-5", "S-5 is negative, and GRBL halts there"),
+        ("M3 S1001", "S1001 is not within 0 and the spindle's 1000"),
+        ("G1 X50 A3 F300 M5", "GRBL does not know A on G1 and halts there"),
+        ("G90 G0 B1", "GRBL does not know B on G0 and halts there"),
+        ("G4 P901", "G4 waits 901 s in the midst of the ink"),
+    ],
+)
+def test_words_that_grbl_refuses(line: str, says: str) -> None:
+    assert (10, says) in [(at, what.partition(", where")[0]) for at, what in found(line + "\n")]
+
+
+@pytest.mark.parametrize("line", ["G4 P0", "G4 P0.5", "G04 P900", "M3 S0", "M5 S0"])
+def test_words_that_grbl_takes(line: str) -> None:
+    assert not found(line + "\n")
+
+
+@pytest.mark.parametrize(("zeros", "faults"), [(67, 0), (68, 1), (90, 1)])
+def test_grbl_counts_what_it_keeps_of_a_line_once(zeros: int, faults: int) -> None:
+    line = f"G1 Z10.{zeros * '0'}" + 40 * " " + f"G21 G90 (a {'note' * 20}) ; {'note' * 20}"
+    assert len(line.partition("(")[0].replace(" ", "")) == 79 + zeros - 67
+    assert [at for at, what in found(line + "\n") if "characters long" in what] == [10] * faults
+
+
+def test_a_stop_on_a_line_acts_behind_its_move() -> None:
+    text = RAPID.replace("G1 X60 F200", "G1 X60 F200{first}\nG1 Y60{last}")
+    assert told(text.format(first="", last="")) == told(text.format(first="", last=" M0")) == []
+    for stop in ("M0", "M1"):
+        waits = f"{stop} waits for a click in the midst of the ink, and the silicone sets meanwhile"
+        assert told(text.format(first=f" {stop}", last="")) == [(7, waits)]
+    assert told(text.replace("M3 S100", "M3 S100 M0").format(first="", last="")) == []  # before the ink
+
+
+@pytest.mark.parametrize("end", ["M2", "M30"])
+def test_nothing_moves_behind_the_end(end: str) -> None:
+    behind = RAPID.replace("M2\n", f"G91\n{end}\n%\n")
+    assert told(behind) == []
+    (at, what), *more = told(behind + "X50 F300\nX40 Y40\nG0 Z20\n")
+    assert at == 13 and what == f"it moves behind the {end} of line 11, where many senders stop" and not more
+    moves = trace(behind + "X50 F300\n", spindle=load_printer("generic-grbl").spindle).moves
+    assert moves[-1].end == (50.0, 50.0, 10.0) and not moves[-1].rapid  # G90 and G1 are back
+
+
+def test_findings_speak_of_s_and_the_pump() -> None:
+    back = told(RAPID.replace("M3 S100", "M4 S100"))
+    assert (7, "the pump runs backwards while the head moves, for M4 turns it") in back
+    assert not [what for _, what in back if "E-" in what or "make E" in what]

@@ -93,3 +93,73 @@ def test_the_height_is_said_before_the_first_travel(start: str, home: str, lines
     text = f"{start}\nG90\nM83\nM302 P1\nG0 Z1.6 F300\n{LINE}G0 Z10 F300"
     faults = check_text(text, replace(printer, home=home))
     assert [f.line for f in faults] == lines and all("unknown height" in f.what for f in faults)
+
+
+def untold(text: str, printer: Printer) -> list[tuple[int, str]]:
+    return [(f.line, f.what) for f in check_text(text, printer) if "unknown place" in f.what or "it homes" in f.what]
+
+
+@pytest.mark.parametrize(
+    ("body", "lines"),
+    [
+        ("G28 X Y\nG0 Z10 F300\nG0 X50 Y50 F6000\nG0 Z1.6 F300\nG1 X60 E40 F240\n", []),
+        ("G28 X Y\nG0 Z1.6 F300\nG0 X50 Y50 F6000\nG1 X60 E40 F240\n", [3]),
+        ("G28 X Y\nG0 Z10 F300\nG0 X50 Y50 Z1.6 F300\nG1 X60 E40 F240\n", [3]),  # down in one diagonal
+        ("G28 X Y\nG0 Z10 F300\nG91\nG0 X50 Y50 Z-8.4 F300\nG90\nG0 X50 Y50\nG1 X60 E40 F240\n", [4, 6]),  # by so much from nowhere
+        ("G28 X Y\nG0 Z1.6 F300\nG91\nG0 X5 F600\nG90\nG0 Z10 F300\nG0 X50 Y50\nG0 Z1.6 F300\nG1 X60 E40 F240\n", [4]),
+        ("G28 X Y\nG91\nG0 Z10 F300\nG90\nG0 Z10\nG0 X50 Y50\nG0 Z1.6\nG1 X60 E40 F240\n", []),
+    ],
+)
+def test_a_low_way_over_an_unknown_place(body: str, lines: list[int], printer: Printer) -> None:
+    text = f"M83\nM302 P1\n{body}G0 Z10 F300\n"
+    assert [line - 2 for line, _ in untold(text, printer)] == lines
+
+
+@pytest.mark.parametrize(
+    ("homing", "lines"),
+    [
+        ("G28 X Y\nG0 X90 Y90\n", [9, 10]),
+        ("G28 X\nG0 Y105\nG0 X90\n", [9, 10, 11]),
+        ("G28 X R8.4\nG0 Z10 F300\nG0 X90 Y105\n", []),  # Marlin rises by R before
+        ("G0 Z10 F300\nG28 X Y\nG0 X90 Y90\n", []),
+        ("G0 Z10 F300\nG28 X Y\nG0 Z1.6 F300\nG0 X90 Y90\n", [12]),
+    ],
+)
+def test_homing_in_wet_ink(homing: str, lines: list[int], printer: Printer) -> None:
+    text = HEAD + LINE + homing + "G0 Z10 F300\n"
+    assert [line for line, _ in untold(text, printer)] == lines
+    if not lines:
+        assert check_text(text, printer) == ()
+
+
+@pytest.mark.parametrize("name", ["ender5plus-vipro", "generic-marlin", "generic-grbl"])
+@pytest.mark.parametrize("arcs", ["native", "lines"])
+def test_our_own_file_without_its_first_way(
+    make_piece: Callable[..., Piece], make_sensor: Callable, hairpin: Path, material: Material, name: str, arcs: str
+) -> None:
+    printer = load_printer(name)
+    program = plan(make_piece(120, 100), [make_sensor("C1", hairpin, 20, 20)], printer=printer, material=material).program
+    text = emit(program, printer, arcs=arcs)  # type: ignore[arg-type]
+    assert check_text(text, printer) == ()
+    lost, count = re.subn(r"^G[01] X\S+ Y\S+( F\S+)?\n(?=G[01] Z1.6)", "", text, count=1, flags=re.MULTILINE)
+    assert count == 1
+    assert any("from or to an unknown place at Z1.6" in f.what for f in check_text(lost, printer))
+
+
+@pytest.mark.parametrize("name", ["ender5plus-vipro", "generic-marlin"])
+def test_homing_planted_behind_the_retract(
+    make_piece: Callable[..., Piece], make_sensor: Callable, hairpin: Path, material: Material, name: str
+) -> None:
+    printer = load_printer(name)
+    text = emit(plan(make_piece(120, 100), [make_sensor("C1", hairpin, 20, 20)], printer=printer, material=material).program, printer)
+    planted, count = re.subn(r"^(G1 E-.*)\n", r"\1\nG28 X Y\n", text, count=1, flags=re.MULTILINE)
+    assert count == 1
+    told = [f.what for f in check_text(planted, printer)]
+    assert any("it homes X and Y at Z1.6" in what for what in told)
+
+
+def test_grbl_over_an_unknown_place() -> None:
+    grbl = load_printer("generic-grbl")
+    low = "G21\nG90\nG0 Z1.6\nG0 X50 Y50\nM3 S242\nG1 X60 F300\nM5\nG0 Z10\n"
+    assert [line for line, _ in untold(low, grbl)] == [4]
+    assert check_text(low.replace("G0 Z1.6\nG0 X50 Y50", "G0 Z10\nG0 X50 Y50\nG0 Z1.6"), grbl) == ()

@@ -12,12 +12,13 @@ from hypothesis import strategies as st
 from shapely.ops import substring
 
 from gcode.check import check_text
-from gcode.check_ink import TURN, ink_findings, laid_pieces
+from gcode.check_ink import CLOSE, TURN, ink_findings, laid_pieces
 from gcode.emit import emit
 from gcode.geometry import Curve, Shape
+from gcode.moves import Finding, Move
 from gcode.plan import Plan, plan
 from gcode.printer import Printer, load_printer
-from gcode.trace import Finding, Move, trace
+from gcode.trace import trace
 from skinfab.material import Material
 from skinfab.patterns.registry import PATTERNS, make_pattern
 from skinfab.pieces import Piece
@@ -69,6 +70,13 @@ def stroke(x: float, y: float, to: str, e: float) -> str:
         ("G1 X110 E40 F240\nG2 X110 Y102 I0 J1 E12.6\nG1 X100 E40\n", 9, "wet ink of line 8"),  # G2 for G3
         ("G1 X110 E40 F240\nG1 Y105 E20\nG1 X105 E20\nG1 Y95 E40\n", 11, "near X105.00 Y95.00 it lays ink 0.00 mm"),  # it crosses itself
         ("G3 X100 Y104 I0 J2 E25.2 F240\nG3 X100 Y100 I0 J-2 E25.2\nG1 X105 E20\n", 9, "wet ink of line 8"),  # round upon its start
+        ("G3 X100 Y104 I0 J2 E25.2 F240\nG3 X100 Y100 I0 J-2 E25.2\n", None, ""),  # a ring that closes
+        ("G3 X100 Y102 I0 J1 E12.6 F240\nG3 X100 Y100 I0 J-1 E12.6\n", None, ""),
+        ("G3 X100 Y104 I0 J2 E25.2 F240\nG3 X100.3894 Y100.0383 I0 J-2 E26.8\n", 9, "wet ink of line 8"),  # and 0.4 mm more
+        ("G1 X110 E40 F240\nG1 Y110 E40\nG1 X100 E40\nG1 Y100 E40\n", None, ""),  # a square
+        ("G1 X110 E40 F240\nG1 Y110 E40\nG1 X100 E40\nG1 Y99 E44\n", 11, "wet ink of line 8"),
+        ("G1 X110 E40 F240\nG1 Y110 E40\nG1 X105 E20\nG1 Y100 E40\n", 11, "wet ink of line 8"),  # it ends amid its own bead
+        ("G1 X110 E40 F240\nG1 X108.66 Y105 E20.7\nG1 X100 Y100 E40\n", 10, "wet ink of line 8"),  # a corner of 30 degrees there
         ("G1 X110 E40 F240\nG4 P500\nG1 E-0.8 F300\nG1 E0.8\nG1 X120 E40 F240\n", None, ""),  # a pause, a retract and a prime
         ("G1 E5 F300\nG1 X120 E80 F240\n", None, ""),
     ],
@@ -166,6 +174,7 @@ def rooms(moves: list[Move], printer: Printer) -> dict[int, float]:
     """By shapely and brute force: for each line that lays ink or comes down, room beyond what is needed, mm."""
     room: dict[int, float] = {}
     strokes: list[list[tuple[Move, shapely.LineString, float]]] = [[]]
+    lengths = stroke_lengths(moves)
     for move in moves:
         if move.e > 0 and move.shape is not None:
             line = line_of(move.shape)
@@ -174,9 +183,9 @@ def rooms(moves: list[Move], printer: Printer) -> dict[int, float]:
             way = sum(other.length for _, other, _ in strokes[-1])
             begun = 0.0
             for _, other, r in strokes[-1]:
-                least.append(within_a_stroke(line, way, other, begun, r))
+                least.append(within_a_stroke(line, way, other, begun, r, lengths[len(strokes) - 1]))
                 begun += other.length
-            least.append(within_a_stroke(line, way, line, way, radius))
+            least.append(within_a_stroke(line, way, line, way, radius, lengths[len(strokes) - 1]))
             strokes[-1].append((move, line, radius))
             room[move.line] = min(least)
         elif move.start[2] != move.end[2] or move.shape is not None:
@@ -187,13 +196,24 @@ def rooms(moves: list[Move], printer: Printer) -> dict[int, float]:
     return room
 
 
-def within_a_stroke(line: shapely.LineString, way: float, other: shapely.LineString, begun: float, radius: float) -> float:
+def stroke_lengths(moves: list[Move]) -> list[float]:
+    lengths = [0.0]
+    for move in moves:
+        if move.e > 0 and move.shape is not None:
+            lengths[-1] += line_of(move.shape).length
+        elif move.start[2] != move.end[2] or move.shape is not None:
+            lengths.append(0.0)
+    return lengths
+
+
+def within_a_stroke(line: shapely.LineString, way: float, other: shapely.LineString, begun: float, radius: float, length: float) -> float:
     """Room of the places of `line` from what of `other` was laid so far before."""
     least = math.inf
     for s in np.linspace(0.0, line.length, 200):
         until = way + s - TURN * radius - begun
-        if until > 0:
-            laid = substring(other, 0.0, min(until, other.length))
+        since = CLOSE * radius - begun if way + s > length - CLOSE * radius else 0.0  # the end of a ring upon its start
+        if until > max(since, 0.0) and since < other.length:
+            laid = substring(other, max(since, 0.0), min(until, other.length))
             least = min(least, laid.distance(line.interpolate(s)) - radius)
     return least
 

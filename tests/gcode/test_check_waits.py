@@ -96,3 +96,11 @@ def test_our_own_waits_are_fine(make_piece: Callable, make_sensor: Callable, hai
     sensors = [make_sensor("C1", hairpin, 20, 20), make_sensor("C2", hairpin, 30, 60, 0.2)]
     text = emit(plan(make_piece(120, 100), sensors, printer=printer, material=material).program, printer)
     assert text.count("G4 P") > 3 and not check_text(text, printer)
+
+
+def test_a_wait_that_the_profile_asks_for_is_meant(printer: Printer) -> None:
+    text = STROKES.format(start="", within="", end="", lifted="G4 S1200\n")
+    (fault,) = check_text(text, printer)
+    assert fault.line == 10 and "G4 waits 1200 s in the midst of the ink, where 900 is the most" in fault.what
+    assert not check_text(text, replace(printer, process=replace(printer.process, pause=1200.0)))
+    assert not check_text(text, replace(printer, cleaning=Cleaning(5.0, 6.0, 1200.0, 0.0)))

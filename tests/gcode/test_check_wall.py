@@ -12,9 +12,10 @@ from hypothesis import strategies as st
 
 from gcode.check import check_program
 from gcode.check_wall import Wall, needed_room, wall_findings, wall_of
+from gcode.moves import Finding
 from gcode.plan import plan
 from gcode.printer import Nozzle, Printer, load_printer
-from gcode.trace import Finding, trace
+from gcode.trace import trace
 from gcode.write import checked_text
 from skinfab.errors import RefusedError
 from skinfab.material import Material, load_material
@@ -170,3 +171,19 @@ def test_the_bundled_nozzles_suit_the_bundled_margin(name: str) -> None:
     slope = math.tan(math.radians(material.mould.draft_deg))
     lean = max(material.depth / 2 - printer.heights.print_min, 0.0) * slope
     assert printer.nozzle.outer_radius + printer.nozzle.clearance + lean < least
+
+
+@pytest.mark.parametrize(
+    ("text", "lines"),
+    [
+        ("G28 X Y\nG0 Z1.6 F300\nG0 X50 Y50\nG1 X60 E8", [3]),
+        ("G28 X Y\nG0 Z2.9 F300\nG91\nG0 X50", [4]),
+        ("G28 X Y\nG0 Z3 F300\nG0 X50 Y50", []),
+        ("G0 Z1.6 F300\nG28 X Y", [2]),  # homing, before any ink
+        ("G0 Z3 F300\nG28 X Y", []),
+        ("G0 Z1.6 F300\nG28 X R2", []),
+    ],
+)
+def test_ways_that_nobody_knows(make_piece: Callable[..., Piece], upright: Material, text: str, lines: list[int]) -> None:
+    faults = list(wall_findings(trace("M83\nM302 P1\n" + text), wall_of(make_piece(100, 100), upright, (0.0, 0.0)), NOZZLE))
+    assert [f.line - 2 for f in faults] == lines and all("unknown place" in f.what for f in faults)

@@ -9,13 +9,14 @@ import pytest
 from gcode.check import check_program, check_text
 from gcode.check_wall import wall_of
 from gcode.emit import emit
+from gcode.moves import Trace
 from gcode.parse import parse
 from gcode.plan import Plan, plan
 from gcode.preview import strokes
 from gcode.printer import Cleaning, Printer, load_printer
 from gcode.program import Clean, Prime, Retract
 from gcode.seat import mould_plate, seat
-from gcode.trace import Trace, trace
+from gcode.trace import trace
 from skinfab.errors import RefusedError
 from skinfab.material import Material
 from skinfab.mesh.model import Mesh

@@ -7,8 +7,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gcode.geometry import Curve
+from gcode.moves import Finding, Move
 from gcode.printer import load_printer
-from gcode.trace import Finding, Move, homed_axes, trace
+from gcode.trace import homed_axes, trace
 from skinfab.errors import InputError
 
 START = "G21\nG90\nM83\nM302 P1\nG0 X0 Y0 Z1 F600\n"
@@ -89,8 +90,8 @@ def test_ink_without_m302() -> None:
 
 
 def test_long_lines_and_z_on_arcs() -> None:
-    assert "97 bytes" in faults(START + "G1 X1 ;" + 90 * "x")[0][1]
-    assert not faults(START + "G1 X1 ;" + 89 * "x")
+    assert "96 bytes" in faults(START + "G1 X1." + 90 * "0")[0][1]
+    assert not faults(START + "G1 X1." + 89 * "0" + " ; " + 90 * "x")
     assert "Z on an arc" in faults(START + "G2 X2 Y0 Z2 I1")[0][1]
 
 
@@ -142,7 +143,7 @@ def test_grbl_goes_on_with_the_last_motion() -> None:
     t = trace("X1 Y2 Z3 F60\nG1 X5\nY4 F120\nF600\nX0\nG3 X2 Y4 I1 J0\nX4 I1 J0\nG4 P1\nG28.1\nX6 I1 J0", spindle=SPINDLE)
     assert [c.code for c in t.commands] == ["G0", "G1", "G1", "F", "G1", "G3", "G3", "G4", "G28.1", "G3"]
     assert [m.end for m in t.moves[:4]] == [(1.0, 2.0, 3.0), (5.0, 2.0, 3.0), (5.0, 4.0, 3.0), (0.0, 4.0, 3.0)]
-    assert [m.speed for m in t.moves] == [1.0, 1.0, 2.0, 10.0, 10.0, 10.0, 10.0]
+    assert [m.speed for m in t.moves] == [None, 1.0, 2.0, 10.0, 10.0, 10.0, 10.0]  # F of the G0 is kept
     assert [m.centre for m in t.moves[4:]] == [(1.0, 4.0), (3.0, 4.0), (5.0, 4.0)] and not t.faults
 
 
@@ -165,3 +166,15 @@ def test_marlin_is_said_to_pass_a_line_of_words_over() -> None:
     assert [(f.line, "passes it over" in f.what) for f in t.faults] == [(7, True), (8, True), (9, True)]
     assert [m.end[0] for m in t.moves] == [0.0, 1.0, 2.0, 3.0] and t.moves[-1].speed == 5.0
     assert [f.line for f in trace("X2 Y2\nG0 X1 F60").faults] == [1]
+
+
+def test_g0_of_grbl_goes_as_fast_as_the_machine() -> None:
+    grbl = load_printer("generic-grbl")  # 25 mm/s in X and Y, 5 in Z
+    t = trace("G0 Z10\nG0 X30 Y40 F60\nG0 X0 Y0 Z0\nG1 X6", spindle=grbl.spindle, motion=grbl.motion)
+    assert [m.rapid for m in t.moves] == [True, True, True, False]
+    assert [m.speed for m in t.moves] == pytest.approx([25.0, 25.0, math.hypot(50, 10) / 2, 1.0])
+    assert [m.speed for m in trace("G0 X0 Y0 Z0\nG0 Z1", spindle=grbl.spindle, motion=grbl.motion).moves] == [25.0, 5.0]
+
+
+def test_marlin_s_g0_has_its_f() -> None:
+    assert [(m.speed, m.rapid) for m in trace("G0 X1\nG0 X2 F60\nG0 X3").moves] == [(None, False), (1.0, False), (1.0, False)]
