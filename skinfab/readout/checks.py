@@ -63,7 +63,7 @@ def _times(recording: Recording) -> list[str]:
         if bad := int(np.count_nonzero(back)):
             at = int(np.argmax(back)) + 2
             how = "stands still or runs back" if strict else "runs back"
-            found.append(f"the {name} {how} {bad:,} times, at frame {at:,} first; frames are doubled or the clock was set")
+            found.append(f"the {name} {how} {_counted(bad, 'time')}, at frame {at:,} first; frames are doubled or the clock was set")
     nominal, steps = recording.stream.rate_hz, np.diff(recording.device_time)
     # Of frames that follow one another: lost ones are told elsewhere.
     steps = steps[(np.diff(recording.sequence) == 1) & (steps > 0)]
@@ -72,8 +72,7 @@ def _times(recording: Recording) -> list[str]:
         if abs(rate - nominal) > RATE_PART * nominal:
             found.append(f"frames come at {rate:.4g} Hz, and the stream says {nominal:g}; check the device's clock")
     if len(steps) and (holes := steps[steps > max(HOLE_S, HOLE_STEPS * float(np.median(steps)))]).size:
-        many = f"{holes.size:,} hole{'s' * (holes.size > 1)}"
-        found.append(f"its time has {many}, the longest of {holes.max():.3g} s; nothing is known of what was then")
+        found.append(f"its time has {_counted(holes.size, 'hole')}, the longest of {holes.max():.3g} s; nothing is known of what was then")
     return found
 
 
@@ -82,12 +81,21 @@ def _missing(recording: Recording) -> list[str]:
     found = []
     if lost := int((steps[steps > 1] - 1).sum()):
         part = 100 * lost / (lost + len(recording))
-        found.append(f"{lost:,} frames are missing ({part:.2g} %), in {int(np.count_nonzero(steps > 1)):,} places")
-    if np.any(steps <= 0):
-        found.append(
-            f"the frames' count does not go up at {int(np.count_nonzero(steps <= 0)):,} places; frames are doubled or out of order"
-        )
+        found.append(f"{lost:,} frames are missing ({part:.2g} %), in {_counted(int(np.count_nonzero(steps > 1)), 'place')}")
+    if doubled := int(np.count_nonzero(steps <= 0)):
+        found.append(f"the frames' count does not go up at {_counted(doubled, 'place')}; frames are doubled or out of order")
     return found
+
+
+def _counted(count: int, what: str) -> str:
+    """A number of things.
+
+    Examples
+    --------
+    >>> _counted(1, "place"), _counted(2000, "place")
+    ('1 place', '2,000 places')
+    """
+    return f"{count:,} {what}{'s' * (count != 1)}"
 
 
 def _channels(recording: Recording) -> list[str]:

@@ -77,7 +77,7 @@ def test_times() -> None:
     assert "stands still or runs back 2 times, at frame 501 first" in only(check(replace(GOOD, device_time=time, host_time=GOOD.host_time)))
     host = GOOD.host_time.copy()
     host[700:] -= 60
-    assert "host time runs back 1 times, at frame 701 first" in only(check(replace(GOOD, host_time=host)))
+    assert "host time runs back 1 time, at frame 701 first" in only(check(replace(GOOD, host_time=host)))
     host[3] = np.nan
     assert any("1 of 2,000 frames have no host time" in each for each in check(replace(GOOD, host_time=host)))
 
@@ -96,7 +96,7 @@ def test_missing_and_doubled_frames() -> None:
     assert only(check(made)) == "4 frames are missing (0.2 %), in 2 places"
     sequence = GOOD.sequence.copy()
     sequence[50] = 49
-    assert any("does not go up at 1 places" in each for each in check(replace(GOOD, sequence=sequence)))
+    assert any("does not go up at 1 place;" in each for each in check(replace(GOOD, sequence=sequence)))
 
 
 def wrench(arm: np.ndarray, force: np.ndarray, *, skew: float = 0.0) -> Recording:
