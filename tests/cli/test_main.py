@@ -194,7 +194,7 @@ def test_a_swallowed_interrupt_comes_again() -> None:
     )
     code = FRAME.format(body="\n    ".join(body))
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=20)
-    assert done.stdout in ("swallowed\n", "")
+    assert "swallowed\n".startswith(done.stdout)  # it may come again in the middle of the word
     assert (done.returncode, done.stderr) == (130, "skinfab: interrupted; nothing half-written was left\n")
 
 
