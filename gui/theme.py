@@ -123,7 +123,7 @@ def apply(root: tk.Misc, theme: Theme) -> None:
     for kind in ("error", "warning", "good"):
         style.configure(f"{kind.title()}.TLabel", foreground=getattr(theme, kind))
     style.configure("TButton", padding=(8, 3), relief="flat", background=theme.panel)
-    style.configure("Tool.TButton", padding=(5, 3))
+    style.configure("Tool.TButton", padding=(6, 3), width="")
     style.configure("Tool.Toolbutton", padding=(5, 3), background=theme.panel)
     shades = [("pressed", theme.accent), ("active", theme.window)]
     style.map("TButton", background=shades, foreground=[("disabled", theme.faint), ("pressed", theme.on_accent)])
@@ -151,6 +151,17 @@ def apply(root: tk.Misc, theme: Theme) -> None:
     root.option_add("*TCombobox*Listbox.selectBackground", theme.accent)
     if isinstance(root, (tk.Tk, tk.Toplevel)):
         root.configure(background=theme.window)
+    for child in root.winfo_children():
+        _restyle_menus(child, theme)
+
+
+def _restyle_menus(widget: tk.Misc, theme: Theme) -> None:
+    """Menus are no ttk widgets: those that are there already are told."""
+    if isinstance(widget, tk.Menu):
+        widget.configure(background=theme.panel, foreground=theme.text, selectcolor=theme.text, borderwidth=0)
+        widget.configure(activebackground=theme.accent, activeforeground=theme.on_accent, disabledforeground=theme.faint)
+    for child in widget.winfo_children():
+        _restyle_menus(child, theme)
 
 
 def _bold(root: tk.Misc) -> font.Font:

@@ -2,18 +2,28 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Collection
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
+from gcode.check_wall import nozzle_margin
+from gcode.printer import load_printer
+from skinfab.cli import steps
 from skinfab.document import load_skin
+from skinfab.material import load_material
 from skinfab.mesh.door import load_usable
 from skinfab.mesh.inspect import inspect
 from skinfab.mesh.io import load_mesh
 from skinfab.mesh.repair import clean, repair
 from skinfab.mesh.units import guess_units
+from skinfab.placement.auto import place
+from skinfab.placement.check import validate
 from skinfab.progress import Progress
+from skinfab.seams import partial
+from skinfab.seams.judge import Limits
+from skinfab.seams.partial import Reopened
 from skinfab.skin import Skin, Source
 
 
@@ -105,3 +115,29 @@ def open_skin(*, path: Path, progress: Progress) -> Opened:
     """A document as it lies there."""
     progress(0.1, f"reading {path.name}")
     return Opened(load_skin(path), ())
+
+
+def limits_of(skin: Skin) -> Limits:
+    """What the document's pieces must keep to: its bound, and the bed of its printer."""
+    return steps.limits(skin.max_distortion, steps.profiles(skin.printer, skin.material))
+
+
+def auto_cut(*, skin: Skin, progress: Progress) -> Reopened:
+    """Automatic seams; locked ones stay."""
+    material = load_material(skin.material)
+    return partial.auto_cut(skin, limits_of(skin), neck=material.neck, material=material, progress=progress)
+
+
+def reopen(*, skin: Skin, method: str, anew: Collection[str], progress: Progress) -> Reopened:
+    """The pieces that the seams give as they are."""
+    return partial.reopen(skin, limits_of(skin), method=method, anew=anew, material=load_material(skin.material), progress=progress)
+
+
+def place_automatically(*, skin: Skin, progress: Progress) -> tuple[Skin, tuple[str, ...]]:
+    """Sensors in place of those there are, and what there is to say."""
+    progress(0.1, "placing sensors")
+    printer, material = load_printer(skin.printer), load_material(skin.material)
+    roomy = replace(material, margin=max(material.margin, nozzle_margin(printer, material)))
+    sensors, warnings = place(skin.object, skin.pieces, material=roomy, seed=skin.seed)
+    validate(replace(skin, sensors=tuple(sensors)), roomy)
+    return replace(skin, sensors=tuple(sensors)), tuple(warnings)

@@ -80,17 +80,21 @@ def outcome_of(work: Callable[[], Any]) -> Outcome:
     """
     try:
         return Outcome(result=work())
-    except SkinfabError as fault:
-        return Outcome(sentence=str(fault))
-    except MemoryError:
-        return Outcome(sentence="not enough memory for this; close other programs, or take a mesh with fewer faces")
-    except OSError as fault:
-        where = f"{fault.filename}: " if fault.filename is not None else ""
-        return Outcome(sentence=f"{where}{fault.strerror or fault}")
     except Exception as fault:
-        return Outcome(
-            sentence=f"unexpected {type(fault).__name__}: {fault} (a fault of skinfab: please report it)", trace=traceback.format_exc()
-        )
+        sentence, ours = sentence_of(fault)
+        return Outcome(sentence=sentence, trace=traceback.format_exc() if ours else "")
+
+
+def sentence_of(fault: BaseException) -> tuple[str, bool]:
+    """What to tell the user of a fault, and whether it is one of the program's own."""
+    if isinstance(fault, SkinfabError):
+        return str(fault), False
+    if isinstance(fault, MemoryError):
+        return "not enough memory for this; close other programs, or take a mesh with fewer faces", False
+    if isinstance(fault, OSError):
+        where = f"{fault.filename}: " if fault.filename is not None else ""
+        return f"{where}{fault.strerror or fault}", False
+    return f"unexpected {type(fault).__name__}: {fault} (a fault of skinfab: please report it)", True
 
 
 def _obey(order: Order, channel: Connection) -> Outcome:

@@ -10,7 +10,7 @@ from gui.state.session import Session
 from gui.theme import Theme
 
 #: Lines shown at once; the rest is scrolled to.
-_ROWS = 4
+_ROWS = 3
 
 _MARKS = {"error": "error", "warning": "warning", "note": "note"}
 

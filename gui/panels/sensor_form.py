@@ -29,6 +29,9 @@ _REST_MS = 250
 
 _UNITS = {"mm": "mm", "count": "", "switch": ""}
 
+#: Name, label and unit of the fields for where a sensor lies and how it is read.
+_PLACE = (("x", "x", "mm"), ("y", "y", "mm"), ("angle", "turned", "deg"), ("channel", "channel", ""))
+
 
 class SensorForm(ttk.Frame):
     """Fields for everything of a sensor that can be typed; the same changes as by dragging, through `placement.edit`."""
@@ -44,18 +47,16 @@ class SensorForm(ttk.Frame):
         self._timer: str | None = None
         self._surfaces: tuple[tuple[object, ...], WornSkin] | None = None
         self._strain: tuple[Sensor, Mesh, str] | None = None
-        self._place = ttk.Frame(self)
-        self._place.pack(fill="x")
-        for name, label, unit in (("x", "x", "mm"), ("y", "y", "mm"), ("angle", "turned by", "deg"), ("channel", "channel", "")):
-            self._fields[name] = self._field(self._place, name, label, unit, "")
-        self._params = ttk.Frame(self)
-        self._params.pack(fill="x", pady=(4, 0))
         self.words = tk.StringVar(self)
-        self._label = ttk.Label(self, textvariable=self.words, wraplength=290, justify="left", name="words")
-        self._label.pack(anchor="w", pady=(4, 0))
+        ttk.Label(self, textvariable=self.words, wraplength=290, justify="left", name="words").pack(anchor="w")
         self.fit = tk.StringVar(self)
         self._fit_label = ttk.Label(self, textvariable=self.fit, wraplength=290, justify="left", name="fit")
-        self._fit_label.pack(anchor="w")
+        self._fit_label.pack(anchor="w", pady=(0, 3))
+        self._place = _two_columns(self, "place")
+        for k, (name, label, unit) in enumerate(_PLACE):
+            self._fields[name] = self._field(self._place, name, label, unit, "", at=k)
+        ttk.Separator(self).pack(fill="x", pady=3)
+        self._params = _two_columns(self, "params")
         self.bind("<Destroy>", lambda event: self._stop_timer())
 
     def refresh(self) -> None:
@@ -65,8 +66,9 @@ class SensorForm(ttk.Frame):
             return
         if sensor.pattern.kind != self._kind:
             self._build(sensor)
-        place = {"x": sensor.x, "y": sensor.y, "angle": math.degrees(sensor.angle) % 360, "channel": sensor.channel}
-        for name, value in (place | parameters(sensor.pattern)).items():
+        shown: dict[str, float] = {"x": sensor.x, "y": sensor.y, "angle": math.degrees(sensor.angle) % 360, "channel": sensor.channel}
+        shown |= {f"param_{name}": value for name, value in parameters(sensor.pattern).items()}
+        for name, value in shown.items():
             if name in self._switches:
                 self._switches[name].set(bool(value))
             else:
@@ -102,27 +104,27 @@ class SensorForm(ttk.Frame):
         entry = next(e for e in catalogue() if e.kind == self._kind)
         known = {p.name: p for p in (*entry.parameters, *common())}
         self._switches.clear()
-        for name in parameters(sensor.pattern):
-            parameter = known[name]
+        for k, name in enumerate(parameters(sensor.pattern)):
+            parameter, key = known[name], f"param_{name}"
             tip = f"{parameter.meaning} ({parameter.bounds})" if parameter.bounds else parameter.meaning
             if parameter.unit == "switch":
-                self._switches[name] = tk.BooleanVar(self)
-                ttk.Checkbutton(
-                    self._params, text=name, variable=self._switches[name], command=self._switch(name), name=f"param_{name}"
-                ).pack(anchor="w")
+                self._switches[key] = tk.BooleanVar(self)
+                switch = ttk.Checkbutton(self._params, text=name, variable=self._switches[key], command=self._switch(key), name=key)
+                switch.grid(row=k // 2, column=k % 2, sticky="w")
             else:
-                self._fields[name] = self._field(self._params, f"param_{name}", name, _UNITS[parameter.unit], tip)
+                self._fields[key] = self._field(self._params, key, name, _UNITS[parameter.unit], tip, at=k)
 
-    def _field(self, master: tk.Misc, name: str, label: str, unit: str, tip: str) -> Field:
-        key = name.removeprefix("param_")
-        field = Field(master, label, unit=unit, tip=tip, name=name, complain=self._complain, take=lambda text: self._take(key, text))
-        field.pack(fill="x", pady=1)
+    def _field(self, master: tk.Misc, name: str, label: str, unit: str, tip: str, *, at: int) -> Field:
+        field = Field(
+            master, label, unit=unit, tip=tip, name=name, complain=self._complain, width=7, take=lambda text: self._take(name, text)
+        )
+        field.grid(row=at // 2, column=at % 2, sticky="ew", pady=1, padx=(0, 4))
         return field
 
     def _switch(self, name: str) -> Callable[[], None]:
         def switched() -> None:
             try:
-                self._resize(name, self._switches[name].get())
+                self._resize(name.removeprefix("param_"), self._switches[name].get())
             except SkinfabError as fault:
                 self._complain(str(fault))
                 self.refresh()
@@ -133,7 +135,7 @@ class SensorForm(ttk.Frame):
         skin, sensor = self._selected()
         if skin is None or sensor is None:
             return
-        value = number(text, name)
+        value = number(text, name.removeprefix("param_"))
         id, sensors = sensor.id, skin.sensors
         if name in ("x", "y"):
             x, y = (value, sensor.y) if name == "x" else (sensor.x, value)
@@ -148,7 +150,7 @@ class SensorForm(ttk.Frame):
                 raise InputError(f"channel {int(value)} is used by {others[int(value)]}; give another")
             self._do(f"wire {id}", skin, edit.rewire(sensors, id, channel=int(value)))
         else:
-            self._resize(name, int(value) if value == int(value) else value)
+            self._resize(name.removeprefix("param_"), int(value) if value == int(value) else value)
 
     def _resize(self, name: str, value: float | bool) -> None:
         skin, sensor = self._selected()
@@ -189,6 +191,14 @@ class SensorForm(ttk.Frame):
     def _known_strain(self, skin: Skin, sensor: Sensor) -> str:
         known = self._strain
         return known[2] if known is not None and known[0] is sensor and known[1] is skin.mesh else ""
+
+
+def _two_columns(master: tk.Misc, name: str) -> ttk.Frame:
+    frame = ttk.Frame(master, name=name)
+    frame.pack(fill="x")
+    for column in (0, 1):
+        frame.columnconfigure(column, weight=1, uniform="half")
+    return frame
 
 
 def _words(sensor: Sensor, known: Prediction) -> str:

@@ -11,7 +11,7 @@ from gui.state.session import Session
 from skinfab.electrical import resistance
 from skinfab.errors import InputError
 
-_COLUMNS = (("id", "sensor", 52), ("kind", "pattern", 88), ("piece", "on", 36), ("channel", "ch", 28), ("r", "R, kohm", 84))
+_COLUMNS = (("id", "sensor", 58), ("kind", "pattern", 96), ("piece", "on", 36), ("channel", "ch", 32), ("r", "R, kohm", 76))
 
 
 class SensorsPanel(ttk.Frame):
@@ -22,7 +22,7 @@ class SensorsPanel(ttk.Frame):
         self._session, self._shelf = session, shelf
         rows = ttk.Frame(self)
         rows.pack(fill="both", expand=True)
-        self.list = ttk.Treeview(rows, columns=[c[0] for c in _COLUMNS], show="headings", height=6, selectmode="browse", name="list")
+        self.list = ttk.Treeview(rows, columns=[c[0] for c in _COLUMNS], show="headings", height=5, selectmode="browse", name="list")
         for name, heading, width in _COLUMNS:
             self.list.heading(name, text=heading)
             self.list.column(name, width=width, minwidth=width, anchor="e" if name in ("channel", "r") else "w", stretch=name == "kind")

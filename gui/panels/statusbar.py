@@ -42,6 +42,7 @@ class StatusBar(ttk.Frame):
         self._bar.pack(side="left", padx=6)
         ttk.Button(self._work, text="Cancel", command=cancel, style="Tool.TButton", name="cancel").pack(side="left")
         session.listen("hover", self._refresh)
+        session.listen("skin", self._refresh)
 
     def tip(self, text: str) -> None:
         """Show a hint; "" goes back to what the pointer is on."""

@@ -44,6 +44,10 @@ class History(Generic[T]):
         self._future.clear()
         self.now = value
 
+    def amend(self, value: T) -> None:
+        """Replace the present by what belongs to it; no step of its own."""
+        self.now = value
+
     def undo(self) -> str | None:
         """Go one step back; the label of the step, or None where there is none."""
         return self._step(self._past, self._future)

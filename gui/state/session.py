@@ -74,6 +74,15 @@ class Session:
         self._forget_missing()
         self._tell("skin")
 
+    def amend(self, skin: Skin) -> None:
+        """Complete the document by what follows from its last step, such as the flat pieces of a cut: undone with that step."""
+        saved = not self.dirty
+        self._history.amend(skin)
+        if saved:
+            self._saved = skin
+        self._forget_missing()
+        self._tell("skin")
+
     def undo(self) -> str | None:
         """Take the last step back; its label."""
         return self._went(self._history.undo())

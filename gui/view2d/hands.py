@@ -183,6 +183,8 @@ class Hands:
             return
         self._hit_words = f"{hit.piece}   x {hit.uv[0]:.1f}   y {hit.uv[1]:.1f} mm" if hit.piece else ""
         self._session.hover(hit.target)
+        if self._view.on_point is not None:
+            self._view.on_point(hit)
         self._view.surface.refresh()
 
     def _left(self, _: tk.Event) -> None:

@@ -84,6 +84,8 @@ class View3D(ttk.Frame):
         super().__init__(master, **options)
         self.session, self.theme = session, theme
         self.on_click, self.on_drag, self.on_release = on_click, on_drag, on_release
+        #: Is called with a `Hit`, or None beside the object, wherever the pointer goes without a button down.
+        self.on_point: Callable[[Hit | None], object] | None = None
         self.dpi = self.winfo_fpixels("1i") / 96
         self.scene = Scene(session, derived, theme, dpi=self.dpi)
         self.painter = Painter()
@@ -163,7 +165,14 @@ class View3D(ttk.Frame):
         found = self.hit_at(x, y)
         target = NOTHING if found is None else found.target
         self.session.hover(target)
+        if self.on_point is not None:
+            self.on_point(found)
         return target
+
+    @property
+    def ready(self) -> bool:
+        """Whether what is made beside the window, to turn a big object quickly, is there."""
+        return self._detail is None or self._detail.wait(0)
 
     def redraw(self) -> None:
         """Draw anew as soon as nothing else is waiting; many calls give one picture."""

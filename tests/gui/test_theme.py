@@ -1,6 +1,7 @@
 """Light and dark are complete, and words can be read in both."""
 
 import re
+import tkinter as tk
 from dataclasses import fields
 from tkinter import ttk
 
@@ -35,6 +36,13 @@ def test_words_can_be_read_on_panels_and_fields(theme, word):
 @pytest.mark.parametrize("theme", THEMES.values(), ids=THEMES)
 def test_lines_stand_out_from_the_views(theme):
     assert min(contrast(getattr(theme, line), theme.view) for line in ("select", "hover", "seam", "locked", "forbidden", "ink")) >= 2.5
+
+
+def test_menus_follow(root):
+    menu = tk.Menu(root)
+    for theme in THEMES.values():
+        apply(root, theme)
+        assert str(menu.cget("background")) == theme.panel
 
 
 def test_a_window_can_change_its_theme(root):

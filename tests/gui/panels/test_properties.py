@@ -40,11 +40,11 @@ def sensor(session, id="C1"):
 def test_a_sensor_is_moved_turned_and_wired_by_typing(root, session, panel):
     session.select(Target(piece="P1", sensor="C1"))
     assert panel.title.get() == "Sensor C1"
-    type_into(root, panel, "sensor.!frame.x", "44,5")
+    type_into(root, panel, "sensor.place.x", "44,5")
     assert (sensor(session).x, sensor(session).y) == (44.5, 30.0) and session.undo_label == "move C1"
-    type_into(root, panel, "sensor.!frame.angle", "90")
+    type_into(root, panel, "sensor.place.angle", "90")
     assert sensor(session).angle == pytest.approx(math.pi / 2)
-    type_into(root, panel, "sensor.!frame.channel", "7")
+    type_into(root, panel, "sensor.place.channel", "7")
     assert sensor(session).channel == 7
     for _ in range(3):
         session.undo()
@@ -57,18 +57,25 @@ def test_a_sensor_is_moved_turned_and_wired_by_typing(root, session, panel):
 def test_what_cannot_be_is_said_and_changes_nothing(root, session, panel, field, text, said):
     session.select(Target(piece="P1", sensor="C1"))
     before = session.skin
-    type_into(root, panel, f"sensor.!frame.{field}", text)
+    type_into(root, panel, f"sensor.place.{field}", text)
     assert said in panel.said[-1] and session.skin is before
 
 
 def test_parameters_of_the_pattern_have_their_fields_and_bounds(root, session, panel):
     session.select(Target(piece="P1", sensor="C1"))
-    type_into(root, panel, "sensor.!frame2.param_s", "24")
+    type_into(root, panel, "sensor.params.param_s", "24")
     assert sensor(session).pattern.s == 24 and session.undo_label == "s of C1"
-    type_into(root, panel, "sensor.!frame2.param_s", "2")
+    type_into(root, panel, "sensor.params.param_s", "2")
     assert "nearest value that works" in panel.said[-1] and sensor(session).pattern.s == 24
-    panel.nametowidget("sensor.!frame2.param_caps").invoke()
+    panel.nametowidget("sensor.params.param_caps").invoke()
     assert sensor(session).pattern.caps is True
+
+
+def test_a_parameter_named_as_a_coordinate_is_another_field(root, session, panel):
+    session.select(Target(piece="P1", sensor="C1"))
+    assert panel.nametowidget("sensor.place.x.entry").get() == "50"
+    type_into(root, panel, "sensor.params.param_x", "2")
+    assert (sensor(session).pattern.x, sensor(session).x) == (2, pytest.approx(50, abs=5))
 
 
 def test_prediction_fit_and_strain_are_said(root, session, panel):
@@ -80,7 +87,7 @@ def test_prediction_fit_and_strain_are_said(root, session, panel):
         assert time.monotonic() < end
         root.update()
     assert "stretched by 0.00 %" in words.get(), "a plate is worn as flat as it was made"
-    type_into(root, panel, "sensor.!frame.x", "95")
+    type_into(root, panel, "sensor.place.x", "95")
     assert "outside piece P1" in form.fit.get()
 
 

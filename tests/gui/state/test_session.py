@@ -80,3 +80,15 @@ def test_each_source_speaks_for_itself_and_errors_come_first(skin):
 def test_an_unknown_shading_is_refused():
     with pytest.raises(ValueError, match="no shading 'heat'"):
         Session().shade("heat")
+
+
+def test_what_follows_from_a_step_is_undone_with_it(skin):
+    session = Session()
+    session.open(skin, None)
+    session.amend(replace(skin, seed=1))
+    assert not session.dirty and session.undo_label is None
+    session.do("cut", replace(skin, seed=2))
+    session.amend(replace(skin, seed=3))
+    assert session.dirty and session.skin.seed == 3
+    session.undo()
+    assert session.skin.seed == 1 and not session.dirty

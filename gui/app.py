@@ -1,0 +1,268 @@
+"""The window: makes everything and connects it; what happens is in commands, tools, panels and views."""
+
+from __future__ import annotations
+
+import contextlib
+import time
+import tkinter as tk
+import traceback
+from dataclasses import replace
+from pathlib import Path
+from tkinter import ttk
+from types import TracebackType
+from typing import get_args
+
+from gui.actions import Action, Actions
+from gui.commands.edit import EditCommands
+from gui.commands.file import FileCommands
+from gui.commands.help import HelpCommands
+from gui.commands.seams import SeamCommands
+from gui.commands.sensors import SensorCommands
+from gui.commands.view import ViewCommands
+from gui.desk import Desk
+from gui.dialogs.dialogs import Dialogs
+from gui.jobs.background import Background
+from gui.jobs.runner import Runner
+from gui.jobs.worker import Step, sentence_of
+from gui.panels.new_sensor import NewSensorPanel
+from gui.panels.pieces import PiecesPanel
+from gui.panels.problems import ProblemsPanel
+from gui.panels.properties import PropertiesPanel
+from gui.panels.sensors import SensorsPanel
+from gui.panels.statusbar import StatusBar
+from gui.state.autosave import Autosave, left_over
+from gui.state.derived import Derived
+from gui.state.describe import describe
+from gui.state.problem import Problem
+from gui.state.profiles import ProfileShelf
+from gui.state.session import Session, Topic
+from gui.state.store import Remembered, recall, remember, state_folder
+from gui.theme import THEMES, apply
+from gui.tools.toolbox import Toolbox
+from gui.view2d.view import View2D
+from gui.view3d.view import View3D
+from skinfab.errors import InputError
+
+#: The size a window begins with, px: fits the smallest screen it is made for, less the frame of a window manager.
+FIRST_SIZE = "1280x760"
+LEAST_SIZE = (960, 600)
+
+#: What buttons and menus may depend on.
+TOPICS: tuple[Topic, ...] = tuple(topic for topic in get_args(Topic) if topic != "hover")
+
+#: How often complaints of the autosave thread are looked for, ms.
+_WATCH_MS = 1000
+
+#: Width of the panel at the side, px at 96 dots an inch.
+_SIDE = 320
+
+
+class App:
+    """The placement window.
+
+    Parameters
+    ----------
+    root : Tk
+    path : Path, optional
+        A mesh or a skin to open at once.
+    dialogs : Dialogs, optional
+        Who answers questions; a person by default.
+    """
+
+    def __init__(self, root: tk.Tk, path: Path | None = None, *, dialogs: Dialogs | None = None) -> None:
+        self.root = root
+        root.title("skinfab")
+        root.minsize(*LEAST_SIZE)
+        state = state_folder()
+        remembered = recall(state)
+        root.geometry(remembered.geometry or FIRST_SIZE)
+        self.theme = THEMES[remembered.theme]
+        apply(root, self.theme)
+        self.session, self.derived, self.shelf = Session(), Derived(), ProfileShelf()
+        self.background = Background(root)
+        self.autosave = Autosave(state / "autosave", failed=self._autosave_failed)
+        self.runner = Runner(root, changed=self._progress, log=self._log)
+        self.desk = Desk(
+            root=root,
+            session=self.session,
+            derived=self.derived,
+            shelf=self.shelf,
+            runner=self.runner,
+            dialogs=dialogs or Dialogs(root),
+            say=lambda text: self.status.say(text),
+            state=state,
+        )
+        self._log_file = state / "gui.log"
+        self._closed = False
+        self._refresh: str | None = None
+        self._autosave_fault = ""
+        self._watch = root.after(_WATCH_MS, self._watch_autosave)
+        root.report_callback_exception = self._fault
+        self._build(remembered)
+        root.protocol("WM_DELETE_WINDOW", self.close)
+        root.after(50, self._begin, path)
+
+    def close(self) -> None:
+        """Ask about unsaved work, and end."""
+        if self._closed or not self.files.may_leave():
+            return
+        self._closed = True
+        self.root.after_cancel(self._watch)
+        geometry = self.root.geometry()
+        self.runner.close()
+        self.background.close()
+        self.autosave.close()
+        what = replace(self.files.remembered, theme=self.theme.name, geometry=geometry)
+        self.desk.guarded("close", lambda: remember(self.desk.state, what))
+        self.root.destroy()
+
+    def use_theme(self, name: str) -> None:
+        """Light or dark."""
+        self.theme = THEMES[name]
+        apply(self.root, self.theme)
+        for part in (self.view3d, self.view2d, self.problems, self.new_sensor):
+            part.restyle(self.theme)
+        self.actions.refresh()
+
+    # How it is put together
+
+    def _build(self, remembered: Remembered) -> None:
+        root, session = self.root, self.session
+        self.status = StatusBar(root, session, cancel=self.runner.cancel, describe=lambda: describe(session, self.derived))
+        self.status.pack(side="bottom", fill="x")
+        body = ttk.Panedwindow(root, orient="vertical", name="body")
+        middle = ttk.Panedwindow(body, orient="horizontal", name="middle")
+        self.view3d = View3D(middle, session, self.derived, self.theme, name="view3d")
+        self.tabs = ttk.Notebook(middle, name="tabs")
+        self.view2d = View2D(self.tabs, session, self.derived, self.theme, name="view2d")
+        self.tabs.add(self.view2d, text="Flat skin")
+        self.side = self._side_panel(middle)
+        middle.add(self.view3d, weight=5)
+        middle.add(self.tabs, weight=6)
+        middle.add(self.side, weight=0)
+        self.problems = ProblemsPanel(body, session, self.theme)
+        body.add(middle, weight=1)
+        body.add(self.problems, weight=0)
+        self._connect(remembered)
+        self.actions.tool_bar(root, self.status.tip).pack(side="top", fill="x", before=self.status)
+        root.configure(menu=self.actions.menu_bar({"File/open/Open recent": self.files.fill_recent}))
+        apply(root, self.theme)  # menus too
+        body.pack(side="top", fill="both", expand=True)
+
+    def _side_panel(self, master: tk.Misc) -> ttk.Frame:
+        session, complain = self.session, self.status.tip
+        side = ttk.Frame(master, name="side", width=int(_SIDE * self.root.winfo_fpixels("1i") / 96))
+        side.pack_propagate(False)
+        PiecesPanel(side, session, self.derived).pack(fill="x")
+        SensorsPanel(side, session, self.shelf).pack(fill="both", expand=True)
+        forms = ttk.Notebook(side, name="forms")
+        properties = PropertiesPanel(forms, session, self.derived, self.shelf, self.background, complain=complain)
+        self.new_sensor = NewSensorPanel(forms, session, self.shelf, self.theme, complain=complain, place=lambda: session.take_up("add"))
+        forms.add(properties, text="Properties")
+        forms.add(self.new_sensor, text="New sensor")
+        forms.pack(fill="x")
+        # What is taken in hand or selected is what one wants to see.
+        session.listen("tool", lambda: forms.select(self.new_sensor if session.tool == "add" else properties))
+        session.listen("selection", lambda: forms.select(properties) if session.tool != "add" else None)
+        return side
+
+    def _connect(self, remembered: Remembered) -> None:
+        desk = self.desk
+        self.files = FileCommands(desk, self.autosave, remembered, opened=self._opened)
+        self.toolbox = Toolbox(desk, self.view3d, self.view2d, theme=lambda: self.theme, pattern=self.new_sensor.pattern)
+        views = ViewCommands(desk, self.view3d, self.view2d, theme=lambda: self.theme.name, use_theme=self.use_theme)
+        actions = [
+            *self.files.actions(),
+            Action("quit", "Close", "File", self.close, "Control-q"),
+            *EditCommands(desk).actions(),
+            *SeamCommands(desk).actions(),
+            *SensorCommands(desk).actions(),
+            *self.toolbox.actions(),
+            *views.actions(),
+            *HelpCommands(desk, lambda: self.actions.keys()).actions(),
+        ]
+        self.actions = Actions(self.root, actions)
+        for topic in TOPICS:
+            self.session.listen(topic, self._changed)
+        self.session.listen("file", self._name_window)
+
+    # What happens
+
+    def _begin(self, path: Path | None) -> None:
+        """Offer what a crash has left, then open what was asked for."""
+        for left in left_over(self.desk.state / "autosave"):
+            what = left.path.name if left.path is not None else "a skin that was never saved"
+            when = time.strftime("%H:%M on %d %B", time.localtime(left.when))
+            text = f"skinfab ended without saving {what}. There is a copy of it as it was at {when}."
+            answer = self.desk.dialogs.ask("Unsaved work was kept", text, ("Open the copy", "Later", "Throw it away"), cancel="Later")
+            if answer == "Open the copy":
+                self.files.recover(left)
+                return
+            if answer == "Throw it away":
+                left.discard()
+        if path is not None:
+            self.files.open_path(path)
+
+    def _opened(self) -> None:
+        self.view3d.fit()
+        self.view2d.fit()
+
+    def _changed(self) -> None:
+        # Many changes in a row are one to buttons and menus.
+        if self._refresh is None:
+            self._refresh = self.root.after_idle(self._refresh_now)
+
+    def _refresh_now(self) -> None:
+        self._refresh = None
+        self.actions.refresh()
+        self._name_window()
+
+    def _name_window(self) -> None:
+        skin, path = self.session.skin, self.session.path
+        if skin is None:
+            self.root.title("skinfab")
+            return
+        name = path.name if path is not None else f"{skin.source.file} (not saved as a skin yet)"
+        self.root.title(f"{'*' if self.session.dirty else ''}{name} - skinfab")
+
+    def _autosave_failed(self, sentence: str) -> None:
+        """From the thread that writes copies: said once the window's own loop comes to it."""
+        self._autosave_fault = sentence
+
+    def _watch_autosave(self) -> None:
+        """A thread must not touch the window: what it has to say is fetched here."""
+        self._watch = self.root.after(_WATCH_MS, self._watch_autosave)
+        sentence, self._autosave_fault = self._autosave_fault, ""
+        if sentence:
+            self.session.report("autosave", [Problem(sentence, "autosave", kind="warning")])
+
+    def _progress(self, step: Step | None) -> None:
+        self.status.progress(step)
+
+    def _fault(self, kind: type[BaseException], fault: BaseException, trace: TracebackType | None) -> None:
+        """What a callback raised: a sentence, never a traceback or a dead window."""
+        sentence, ours = sentence_of(fault)
+        if ours:
+            self._log("".join(traceback.format_exception(kind, fault, trace)))
+            sentence += f"; details are in {self._log_file}"
+        self.session.report("window", [Problem(sentence, "window")])
+
+    def _log(self, trace: str) -> None:
+        with contextlib.suppress(OSError), self._log_file.open("a", encoding="utf-8") as log:
+            log.write(f"{time.strftime('%Y-%m-%d %H:%M:%S')}\n{trace}\n")
+
+
+def run(path: Path | None = None) -> None:
+    """Open the window and stay until it is closed.
+
+    Raises
+    ------
+    InputError
+        There is no screen.
+    """
+    try:
+        root = tk.Tk(className="skinfab")
+    except tk.TclError as fault:
+        raise InputError(f"there is no screen to open a window on ({fault}); set DISPLAY, or use the commands without a window") from fault
+    App(root, path)
+    root.mainloop()

@@ -1,0 +1,47 @@
+"""Sensors by themselves, and a new one."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from gui.actions import Action
+from gui.desk import Desk
+from gui.jobs import tasks
+from gui.state.adopt import adopt
+from gui.state.selection import NOTHING
+from skinfab.skin import Skin
+
+
+class SensorCommands:
+    """The Sensors menu."""
+
+    def __init__(self, desk: Desk) -> None:
+        self._desk = desk
+
+    def actions(self) -> list[Action]:
+        """For the table."""
+        tip = "Sensors where there is room: strain over the joints of a finger, contact elsewhere; those there are go."
+        return [
+            Action("auto_place", "Place automatically", "Sensors", self.place, "F7", self._desk.has_pieces, tip, True),
+            Action("clear", "Remove all sensors", "Sensors", self.clear, "", self._desk.has_sensors),
+        ]
+
+    def place(self) -> None:
+        """Automatic sensors in place of those there are."""
+        asked = self._desk.skin
+
+        def take(result: tuple[Skin, tuple[str, ...]]) -> None:
+            skin, warnings = result
+            session = self._desk.session
+            if session.skin is None or session.skin.pieces != asked.pieces:
+                self._desk.complain("place", "the pieces changed while sensors were being placed; place them again")
+                return
+            session.do("place automatically", replace(session.skin, sensors=adopt(asked, skin).sensors))
+            self._desk.note("place", warnings, kind="warning")
+
+        self._desk.work("placing sensors", tasks.place_automatically, take, source="place", skin=asked)
+
+    def clear(self) -> None:
+        """Take all off."""
+        self._desk.session.select(NOTHING)
+        self._desk.session.do("remove all sensors", replace(self._desk.skin, sensors=()))

@@ -1,0 +1,1 @@
+"""What clicks and drags in the views do, one file a family of tools."""
