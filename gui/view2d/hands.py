@@ -75,7 +75,7 @@ class Hands:
             ("<Button-4>", lambda e: self._wheel(e, _ZOOM)),
             ("<Button-5>", lambda e: self._wheel(e, 1 / _ZOOM)),
             ("<MouseWheel>", lambda e: self._wheel(e, _ZOOM ** (1 if e.delta > 0 else -1))),
-            ("<Escape>", lambda _: self.let_go(back=True)),
+            ("<Escape>", self._escape),
         ):
             widget.bind(event, callback)
         bind_keys(view)
@@ -88,17 +88,21 @@ class Hands:
         """Where the pointer is, in words."""
         return self._hit_words
 
-    def let_go(self, *, back: bool = False) -> None:
-        """End a drag; `back` puts everything where it was."""
-        dragged, committed = self._grabbed is not None and bool(self.sensors), self._committed
+    def let_go(self, *, back: bool = False) -> bool:
+        """End a drag; `back` puts everything where it was. Whether there was one."""
+        dragged, committed = bool(self.sensors), self._committed
+        held = dragged or self.rectangle is not None
         self._drop_hold()
         if dragged and back and committed:
             self._session.undo()
         elif dragged:
             self._view.redraw()
-        elif back:
-            self._session.select(NOTHING)
         self._view.surface.refresh()
+        return held
+
+    def _escape(self, _: tk.Event) -> str | None:
+        # Where nothing is held, Escape is for whoever is asked next.
+        return "break" if self.let_go(back=True) else None
 
     # The pointer
 
@@ -191,6 +195,8 @@ class Hands:
         self._hit_words = ""
         if self._pressed is None:
             self._session.hover(NOTHING)
+            if self._view.on_point is not None:
+                self._view.on_point(None)
         self._view.surface.refresh()
 
     def _drag(self, x: int, y: int, *, snap: bool) -> None:
@@ -218,9 +224,8 @@ class Hands:
         self._moved(event)
         self._follow()
         if self._tool_has_it:
-            hit = self._view.hit(event.x, event.y)
-            if hit is not None and self._view.on_release is not None:
-                self._view.on_release(hit)
+            if self._view.on_release is not None:
+                self._view.on_release(self._view.hit(event.x, event.y))
         elif self.sensors:
             self._commit()
             self._drop_hold()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 from matplotlib.backends.backend_agg import RendererAgg
@@ -34,15 +34,15 @@ class Pen:
 
     Attributes
     ----------
-    touched : (left, low, right, high) or None
-        Box round everything drawn so far.
+    touched : list of (left, low, right, high)
+        Boxes round everything drawn so far, none of which overlap.
     """
 
     def __init__(self, renderer: RendererAgg, letters: Letters, ratio: float = 1.0) -> None:
         self._renderer, self._letters, self.ratio = renderer, letters, ratio
         self._picture = np.asarray(renderer.buffer_rgba())
         self.width, self.height = int(renderer.width), int(renderer.height)
-        self.touched: Box | None = None
+        self.touched: list[Box] = []
 
     def line(self, points: ArrayLike, colour: str, width: float, *, closed: bool = False, alpha: float = 1.0, dashed: bool = False) -> None:
         """One line through points (k, 2)."""
@@ -144,10 +144,24 @@ class Pen:
 
     def _touch(self, box: Box, width: float) -> None:
         spare = width * self.ratio / 2 + 2
-        box = (box[0] - spare, box[1] - spare, box[2] + spare, box[3] + spare)
-        self.touched = box if self.touched is None else union(self.touched, box)
+        self.touched = apart([*self.touched, (box[0] - spare, box[1] - spare, box[2] + spare, box[3] + spare)])
 
 
-def union(one: Box, two: Box) -> Box:
-    """The box round both."""
-    return min(one[0], two[0]), min(one[1], two[1]), max(one[2], two[2]), max(one[3], two[3])
+def apart(boxes: Iterable[Box]) -> list[Box]:
+    """Boxes round the same places, those that overlap joined.
+
+    Examples
+    --------
+    >>> apart([(0, 0, 2, 2), (5, 5, 6, 6), (1, 1, 3, 3)])
+    [(5, 5, 6, 6), (0, 0, 3, 3)]
+    """
+    result: list[Box] = []
+    for box in boxes:
+        while True:
+            over = next((b for b in result if b[0] <= box[2] and box[0] <= b[2] and b[1] <= box[3] and box[1] <= b[3]), None)
+            if over is None:
+                break
+            result.remove(over)
+            box = (min(over[0], box[0]), min(over[1], box[1]), max(over[2], box[2]), max(over[3], box[3]))
+        result.append(box)
+    return result

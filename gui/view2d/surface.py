@@ -12,20 +12,12 @@ from matplotlib.transforms import Bbox
 from numpy.typing import NDArray
 
 from gui.view2d.letters import Letters
-from gui.view2d.pen import Box, Pen, union
+from gui.view2d.pen import Box, Pen, apart
 
 #: Events that matplotlib listens to for figures, which there are none of here: they only take time.
 _FOR_FIGURES = (
-    "<Motion>",
-    "<Key>",
-    "<KeyRelease>",
-    "<Enter>",
-    "<Leave>",
-    "<Button-1>",
-    "<Button-2>",
-    "<Button-3>",
-    "<Button-4>",
-    "<Button-5>",
+    *("<Motion>", "<Key>", "<KeyRelease>", "<Enter>", "<Leave>", "<Button-4>", "<Button-5>"),
+    *(f"<{kind}-{k}>" for kind in ("Button", "Double-Button", "ButtonRelease") for k in (1, 2, 3)),
 )
 
 
@@ -51,7 +43,7 @@ class Surface(FigureCanvasTkAgg):
         self._still, self._moving = still, moving
         self._letters = Letters()
         self._kept: NDArray[np.uint8] | None = None
-        self._touched: Box | None = None
+        self._touched: list[Box] = []
         self._waiting: str | None = None
 
     @property
@@ -78,7 +70,7 @@ class Surface(FigureCanvasTkAgg):
         renderer.clear()
         self._still(Pen(renderer, self._letters, self.ratio))
         self._kept = self.picture.copy()
-        self._touched = None
+        self._touched = []
         self._over()
         self.blit()
 
@@ -94,15 +86,12 @@ class Surface(FigureCanvasTkAgg):
             self._waiting = None
         if self._kept is None or self._kept.shape != self.picture.shape:
             return  # everything is about to be drawn
-        before = self._touched
-        if before is not None:
-            left, top, right, bottom = self._pixels(before)
+        for left, top, right, bottom in map(self._pixels, self._touched):
             self.picture[top:bottom, left:right] = self._kept[top:bottom, left:right]
+        before = self._touched
         self._over()
-        boxes = [box for box in (before, self._touched) if box is not None]
-        if boxes:
-            left, top, right, bottom = self._pixels(boxes[0] if len(boxes) == 1 else union(*boxes))
-            height = self.size[1]
+        height = self.size[1]
+        for left, top, right, bottom in map(self._pixels, apart([*before, *self._touched])):
             if right > left and bottom > top:
                 self.blit(Bbox([[left, height - bottom], [right, height - top]]))
 

@@ -42,9 +42,10 @@ class View2D(ttk.Frame):
     session : Session
     derived : Derived
     theme : Theme
-    on_click, on_drag, on_release : callable, optional
-        What the current tool does with a `Hit2D` (``on_click`` also takes whether Shift is down), unless the tool is
-        "select", which this view knows itself. They may be set later.
+    on_click, on_drag, on_release, on_point : callable, optional
+        What the current tool does with a `Hit2D` (``on_click`` also takes whether Shift is down; ``on_point`` is told where
+        the pointer is while nothing is pressed, None where it has left). The tool "select" this view knows itself: it is told
+        of no clicks. They may be set later.
     name : str
         Tk name.
     """
@@ -58,12 +59,13 @@ class View2D(ttk.Frame):
         *,
         on_click: Callable[[Hit2D, bool], object] | None = None,
         on_drag: Callable[[Hit2D], object] | None = None,
-        on_release: Callable[[Hit2D], object] | None = None,
+        on_release: Callable[[Hit2D | None], object] | None = None,
+        on_point: Callable[[Hit2D | None], object] | None = None,
         name: str = "view2d",
     ) -> None:
         super().__init__(master, name=name)
         self.session, self.derived, self.theme = session, derived, theme
-        self.on_click, self.on_drag, self.on_release = on_click, on_drag, on_release
+        self.on_click, self.on_drag, self.on_release, self.on_point = on_click, on_drag, on_release, on_point
         #: Is called with a `Hit2D` wherever the pointer goes without a button down.
         self.on_point: Callable[[Hit2D], object] | None = None
         self.lines, self.live = Lines(), Live()
