@@ -58,6 +58,8 @@ def _fault(command: Command) -> tuple[str, str] | None:
         return (f"GRBL does not know {unknown} on {code} and halts there", "take it out") if unknown else None
     if code[0] == "T":
         return None  # a tool's number is kept and nothing done; changing it, M6, is not known
+    if strange := "".join(sorted(command.words.keys() - set("XYZIJKRPLFST"))):
+        return f"GRBL does not know {strange} on {code} and halts there", "take it out"
     if code not in KNOWN:
         return f"GRBL does not know {code} and halts there", "take it out"
     if code in PROBES:

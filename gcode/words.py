@@ -61,7 +61,6 @@ _WORD = re.compile(r"\s*([A-Z])\s*([-+]?(?:\d+\.?\d*|\.\d+))?", re.IGNORECASE)
 _PLAIN = re.compile(r"(?:\s*[A-FH-LN-SU-Z]\s*[-+]?(?:\d{1,99}(?:\.\d{0,99})?|\.\d{1,99}))*\s*")
 _PLAIN_WORD = re.compile(r"([A-Z])\s*([-+.\d]+)")
 _BRACKETS = re.compile(r"\([^()]*\)")
-_NOT_KEPT = re.compile(r"[\s/]+")
 
 
 @dataclass(frozen=True, slots=True)
@@ -155,7 +154,7 @@ def read_commands(text: str, *, blocks: bool = False) -> Iterator[Command]:
 def _kept(raw: str, *, blocks: bool) -> int:
     body = raw.partition(";")[0].rstrip()
     if blocks:
-        body = _NOT_KEPT.sub("", _BRACKETS.sub("", body))
+        body = "".join((_BRACKETS.sub("", body) if "(" in body else body).split()).replace("/", "")
     return len(body if body.isascii() else body.encode())
 
 

@@ -1,8 +1,10 @@
 """Commands that GRBL takes but a print in a wet mould does not."""
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
-from gcode.check import check_text
+from gcode.check import check_text, judge
 from gcode.printer import load_printer
 from gcode.trace import trace
 
@@ -78,6 +80,7 @@ def test_the_pump_rests_during_g0() -> None:
         ("M3 S-5", "S-5 is negative, and GRBL halts there"),
         ("M3 S1001", "S1001 is not within 0 and the spindle's 1000"),
         ("G1 X50 A3 F300 M5", "GRBL does not know A on G1 and halts there"),
+        ("G90 A1", "GRBL does not know A on G90 and halts there"),
         ("G90 G0 B1", "GRBL does not know B on G0 and halts there"),
         ("G4 P901", "G4 waits 901 s in the midst of the ink"),
     ],
@@ -121,3 +124,16 @@ def test_findings_speak_of_s_and_the_pump() -> None:
     back = told(RAPID.replace("M3 S100", "M4 S100"))
     assert (7, "the pump runs backwards while the head moves, for M4 turns it") in back
     assert not [what for _, what in back if "E-" in what or "make E" in what]
+
+
+CODES = ["G0", "G1", "G2", "G3", "G4", "G20", "G28", "G90", "G91", "G92", "M0", "M2", "M3", "M4", "M5", "M30", ""]
+WORDS = st.builds("{}{}".format, st.sampled_from("XYZIJRFSPAN"), st.sampled_from(["", "0", "1", "-1", "50", "1.5", "99999999", "-.0001"]))
+LINES = st.lists(st.one_of(st.sampled_from(CODES), WORDS), min_size=1, max_size=6).map(" ".join)
+
+
+@given(st.lists(LINES, max_size=12))
+def test_hostile_blocks_are_judged_or_told_in_one_sentence(lines: list[str]) -> None:
+    for start in ("", HEAD + "M3 S242\nG1 X60 F300\n"):
+        judged = judge(start + "\n".join(lines), load_printer("generic-grbl"))
+        assert "\n" not in judged.broken_off and (not judged.broken_off or judged.broken_off.startswith("line "))
+        assert all(finding.what and finding.remedy for finding in judged.findings)
