@@ -10,8 +10,8 @@ demo: setup
 
 test: lint
 	@for one in tests/setup_*.sh; do $$one || { [ -z "$$CI" ] && echo "test: going on without $$one; the tests that need it are skipped"; } || exit 1; done
-	@# A file is tested by one worker: what its tests share is made once. (loadgroup groups nothing with pytest 9.2 and xdist 3.8.)
-	$(PYTHON) -m pytest -q -W error -n 2 --dist loadfile --doctest-modules skinfab gcode calibration tests
+	@# Stealing leaves files whole but for a few: what the tests of a file share is made once. (loadgroup groups nothing with pytest 9.2 and xdist 3.8.)
+	$(PYTHON) -m pytest -q -W error -n 2 --dist worksteal --doctest-modules skinfab gcode calibration tests
 
 lint: setup
 	$(PYTHON) -m ruff check .
