@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from skinfab.cli import steps
-from skinfab.cli.nozzle_room import with_room_for_nozzle
 
 if TYPE_CHECKING:
     from skinfab.material import Material
@@ -109,8 +108,10 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 def run(args: argparse.Namespace) -> int:
     """Place or change, check, write, and say what is where."""
     from gcode.printer import load_printer
+    from gcode.used import with_room_for_nozzle
     from skinfab.document import load_skin, save_skin
     from skinfab.material import load_material
+    from skinfab.placement.place import place_sensors
 
     changes = bool(args.edits or args.add)
     if args.patterns:
@@ -131,7 +132,7 @@ def run(args: argparse.Namespace) -> int:
         steps.say([f"the {steps.counted(len(skin.sensors), 'sensor')} that {args.skin} had are placed anew; --list would only show them"])
     if not args.list:
         roomy, wider = with_room_for_nozzle(material, load_printer(skin.printer))
-        sensors, warnings = _changed(skin, roomy, args) if changes else steps.place_sensors(skin, roomy, args.sensors)
+        sensors, warnings = _changed(skin, roomy, args) if changes else place_sensors(skin, roomy, args.sensors)
         skin, warnings = replace(skin, sensors=sensors), [*wider, *warnings, *_beyond_the_boards(sensors)]
         save_skin(skin, target)
     steps.say(warnings, kind="warning")

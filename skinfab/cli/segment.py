@@ -1,12 +1,19 @@
-"""`skinfab segment MESH -o OUT.skin`: cut a mesh into pieces that flatten well."""
+"""`skinfab segment MESH -o OUT.skin`: cut a mesh, or a skin document anew, into pieces that flatten well."""
 
 from __future__ import annotations
 
 import argparse
 import json
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from skinfab.cli import steps
 from skinfab.cli.advice import many_pieces
+
+if TYPE_CHECKING:
+    from skinfab.flatten.distortion import Distortion
+    from skinfab.skin import Skin
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -16,7 +23,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         help="cut a mesh into pieces that flatten well",
         description="Cut a mesh into flat pieces and write the skin document. Seams are found automatically, or taken from a file "
         "of vertex paths: one path a line, vertex numbers counted from 0 in the order of the mesh file, joined by the cheapest way "
-        "over edges.",
+        "over edges. In place of a mesh, a skin document may be given: it is cut anew, its locked seams are kept, its forbidden edges "
+        "are not cut, painted preferences are heeded, and its sensors stay on their spots of the object.",
     )
     steps.add_mesh_options(p)
     p.add_argument("-o", "--output", metavar="OUT.skin", type=steps.named(".skin"), required=True, help="the document to write")
@@ -30,25 +38,52 @@ def run(args: argparse.Namespace) -> int:
     """Cut, write, and say what came out."""
     steps.require_fitting_options(args)
     from skinfab.document import save_skin
-    from skinfab.progress import terminal_progress
     from skinfab.seams.cut import seam_length
+    from skinfab.seams.rules import edge_mask
+
+    start = _document if args.mesh.suffix.lower() == ".skin" else _mesh
+    skin, distortions = start(args)
+    save_skin(skin, args.output)
+    steps.say(many_pieces(skin, wrapped=args.wrap is not None))
+    length = seam_length(skin.mesh, edge_mask(skin.mesh, skin.seams))
+    if args.json:
+        pieces = [
+            {"id": p.id, "n_faces": len(p.F), "size_mm": p.size, "distortion": {"mean": d.mean, "p95": d.p95, "p99": d.p99, "max": d.max}}
+            for p, d in zip(skin.pieces, distortions, strict=True)
+        ]
+        print(json.dumps({"skin": str(args.output), "seam_mm": length, "pieces": pieces}))
+        return 0
+    for line in steps.piece_lines(skin.pieces, distortions):
+        print(line)
+    print(f"{args.output}: {steps.counted(len(skin.pieces), 'piece')}, {length:.0f} mm of seam")
+    return 0
+
+
+def _mesh(args: argparse.Namespace) -> tuple[Skin, Sequence[Distortion]]:
+    """Read a mesh and cut it."""
+    from skinfab.progress import terminal_progress
 
     loaded = steps.load_to_cut(args)
     flattened = steps.surface(args, loaded.mesh)
     used = steps.profiles(args.printer, args.material)
     with terminal_progress(quiet=args.json) as progress:
         seams = steps.cut(args, loaded, flattened.mesh, used, progress)
-    skin, distortions = steps.to_skin(loaded, flattened, seams, used=used, max_distortion=args.max_distortion, seed=args.seed)
-    save_skin(skin, args.output)
-    steps.say(many_pieces(skin, wrapped=args.wrap is not None))
-    if args.json:
-        pieces = [
-            {"id": p.id, "n_faces": len(p.F), "size_mm": p.size, "distortion": {"mean": d.mean, "p95": d.p95, "p99": d.p99, "max": d.max}}
-            for p, d in zip(skin.pieces, distortions, strict=True)
-        ]
-        print(json.dumps({"skin": str(args.output), "seam_mm": seam_length(skin.mesh, seams.cut), "pieces": pieces}))
-        return 0
-    for line in steps.piece_lines(skin.pieces, distortions):
-        print(line)
-    print(f"{args.output}: {steps.counted(len(skin.pieces), 'piece')}, {seam_length(skin.mesh, seams.cut):.0f} mm of seam")
-    return 0
+    return steps.to_skin(loaded, flattened, seams, used=used, max_distortion=steps.bound_of(args), seed=args.seed)
+
+
+def _document(args: argparse.Namespace) -> tuple[Skin, Sequence[Distortion]]:
+    """Read a document and cut it anew, by its marks."""
+    from gcode.used import with_room_for_nozzle
+    from skinfab.document import load_skin
+    from skinfab.progress import terminal_progress
+    from skinfab.seams.partial import auto_cut
+
+    skin = load_skin(args.mesh)
+    used = steps.profiles(args.printer or skin.printer, args.material or skin.material)
+    skin = replace(skin, printer=used.printer_name, material=used.material_name, seed=args.seed or skin.seed)
+    within = steps.limits(steps.bound_of(args, skin), used)
+    roomy, _ = with_room_for_nozzle(used.material, used.printer)
+    with terminal_progress(quiet=args.json) as progress:
+        found = auto_cut(skin, within, neck=used.material.neck, material=roomy, progress=progress)
+    steps.say([fault.text for fault in found.faults], kind="warning")
+    return found.skin, found.distortions

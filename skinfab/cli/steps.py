@@ -3,22 +3,19 @@
 from __future__ import annotations
 
 import argparse
-import math
 import sys
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
-from functools import partial
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from gcode.printer import Printer
+    from gcode.used import Used
     from skinfab.flatten.distortion import Distortion
-    from skinfab.material import Material
     from skinfab.mesh.io import Loaded
     from skinfab.mesh.model import Mesh
+    from skinfab.mesh.surface import Surface
     from skinfab.pieces import Piece
-    from skinfab.placement.sensor import Sensor
     from skinfab.progress import Progress
     from skinfab.seams.auto import Seams
     from skinfab.seams.judge import Limits
@@ -99,7 +96,7 @@ def add_cut_options(p: argparse.ArgumentParser) -> None:
     )
     p.add_argument("--cuts", metavar="FILE", type=Path, help="seams by hand: a text file of vertex paths (see docs/cuts.md); just these")
     p.add_argument("--complete", action="store_true", help="with --cuts: add automatic seams where those do not give good pieces")
-    p.add_argument("--max-distortion", type=bound, default=4.05, metavar="D", help="mean d of a piece at most (default 4.05; 4 is perfect)")
+    p.add_argument("--max-distortion", type=bound, metavar="D", help="mean d of a piece at most (default 4.05; 4 is perfect)")
     p.add_argument("--printer", metavar="NAME|FILE", help="printer profile, whose bed the pieces must fit")
     p.add_argument("--material", metavar="NAME|FILE.toml", help="material profile: ink, silicone, mould (see skinfab strips)")
     p.add_argument("--seed", type=seed, default=0, help="kept in the document; the same seed gives the same result")
@@ -171,109 +168,55 @@ def say(notes: Sequence[str], *, kind: str = "note") -> None:
         print(f"{kind}: {note}", file=sys.stderr)
 
 
-@dataclass(frozen=True)
-class Profiles:
-    """Printer and material, by the names that go into the document."""
+def profiles(printer: str | None = None, material: str | None = None) -> Used:
+    """Printer and material by the names given, or the bundled ones."""
+    from gcode.used import load_used
 
-    printer_name: str
-    printer: Printer
-    material_name: str
-    material: Material
+    return load_used(printer, material)
 
 
-def profiles(printer: str | None = None, material: str | None = None) -> Profiles:
-    """Load the profiles; a file of one's own is named by its absolute path, so that the document finds it again."""
-    from gcode.printer import DEFAULT_PRINTER, load_printer
-    from skinfab.material import DEFAULT_MATERIAL, load_material
+def bound_of(args: argparse.Namespace, skin: Skin | None = None) -> float:
+    """The bound that ``--max-distortion`` gives; without it that of the document, or the usual one."""
+    from skinfab.skin import Skin as Document
 
-    names = (printer or DEFAULT_PRINTER, material or DEFAULT_MATERIAL)
-    name, inks = (str(Path(each).resolve()) if each.endswith(".toml") else each for each in names)
-    return Profiles(name, load_printer(name), inks, load_material(inks))
+    if args.max_distortion is not None:
+        return float(args.max_distortion)
+    return Document.max_distortion if skin is None else skin.max_distortion
 
 
-def limits(max_distortion: float, used: Profiles) -> Limits:
+def limits(max_distortion: float, used: Used) -> Limits:
     """Pieces within the distortion bound whose moulds fit the bed."""
-    from skinfab.mould_plan import mould_fits
-    from skinfab.seams.judge import Limits
+    from gcode.used import limits_for
 
-    mould = used.material.mould
-    rim = 2 * (mould.wall + mould.mark)
-    width, depth = used.printer.bed_size
-    # A piece lies with its long side along x, so a bed that is deeper than wide has no use for the rest.
-    size = (width - rim, min(width, depth) - rim)
-    return Limits(mean=max_distortion, size=size, fits=partial(mould_fits, mould=mould, bed=(width, depth)))
-
-
-@dataclass(frozen=True)
-class Surface:
-    """What is flattened: the object's own surface, or the one that a skin of some thickness keeps its lengths on."""
-
-    mesh: Mesh
-    thickness: float
-    neutral: float
-    remarks: tuple[str, ...] = ()
+    return limits_for(used, max_distortion)
 
 
 def surface(args: argparse.Namespace, mesh: Mesh, *, usual: float = 0.0) -> Surface:
-    """The surface that ``--thickness`` asks for; without it, for the usual thickness (mm), and places where that folds are rounded off."""
-    from skinfab.errors import InputError
-    from skinfab.mesh.offset import OffsetError, offset_mesh
+    """The surface that ``--thickness`` asks for; without it, for the usual thickness (mm)."""
+    from skinfab.mesh import surface as library
 
-    thickness = usual if args.thickness is None else args.thickness
-    size = float((mesh.bbox[1] - mesh.bbox[0]).max())
-    if thickness > size:
-        raise InputError(
-            f"a skin {thickness:g} mm thick does not go on an object {size:.3g} mm long; check --units and --thickness, or scale the "
-            "object up with --scale"
-        )
-    try:
-        offset = offset_mesh(mesh, thickness * args.neutral, round_off=args.thickness is None)
-    except OffsetError as fault:
-        # Rounded down to whole hundredths: what is said will do.
-        most = math.floor(100 * fault.largest / args.neutral) / 100
-        less = f", give --thickness {most:g} or less" if most > 0 else ""
-        raise InputError(f"--thickness {thickness:g}: {fault}{less}, or leave it to skinfab make, which rounds it off by itself") from fault
-    remarks = offset.remarks
-    if usual and thickness and thickness != usual:
-        remarks += (f"flattened for a skin {thickness:g} mm thick, but the material profile pours {usual:g} mm; change one of them",)
-    if offset.mesh is mesh and args.neutral:
-        thickness = 0.0  # as far as the document is concerned, it was flattened without
-    return Surface(offset.mesh, thickness, args.neutral, remarks)
+    return library.surface(mesh, thickness=args.thickness, neutral=args.neutral, usual=usual)
 
 
 def to_skin(
-    loaded: Loaded, flattened: Surface, found: Seams, *, used: Profiles, max_distortion: float, seed: int
+    loaded: Loaded, flattened: Surface, found: Seams, *, used: Used, max_distortion: float, seed: int
 ) -> tuple[Skin, list[Distortion]]:
-    """The document of a cut mesh without sensors, its pieces flattened to the end, and each piece's distortion in its order."""
-    from skinfab.seams.finish import finish
-    from skinfab.seams.pieces import to_pieces
-    from skinfab.skin import Skin, Source
+    """The document of a cut mesh without sensors, and each piece's distortion in its order."""
+    from skinfab.seams import document
+    from skinfab.skin import Source
 
-    mesh, topology = flattened.mesh, flattened.mesh.topology
-    seams = finish(mesh, found, limits(max_distortion, used))
-    pieces = to_pieces(mesh, seams.pieces)
-    skin = Skin(
-        mesh=mesh,
-        source=Source(loaded.file, loaded.sha256, loaded.units, loaded.scale),
-        seams=topology.E[seams.cut & ~topology.is_boundary],
-        pieces=pieces,
-        printer=used.printer_name,
-        material=used.material_name,
-        max_distortion=max_distortion,
-        seed=seed,
-        thickness=flattened.thickness,
-        neutral=flattened.neutral,
-        object_V=None if mesh is loaded.mesh else loaded.mesh.V,
+    source = Source(loaded.file, loaded.sha256, loaded.units, loaded.scale)
+    within = limits(max_distortion, used)
+    return document.to_skin(
+        loaded.mesh, source, flattened, found, within, printer=used.printer_name, material=used.material_name, seed=seed
     )
-    by_first_face = {int(piece.faces[0]): verdict.distortion for piece, verdict in seams.pieces}
-    return skin, [by_first_face[int(piece.faces[0])] for piece in pieces]
 
 
-def cut(args: argparse.Namespace, loaded: Loaded, mesh: Mesh, used: Profiles, progress: Progress) -> Seams:
+def cut(args: argparse.Namespace, loaded: Loaded, mesh: Mesh, used: Used, progress: Progress) -> Seams:
     """Automatic seams of the surface that is flattened, or those that ``--cuts`` gives."""
     from skinfab.seams.auto import find_seams
 
-    within = limits(args.max_distortion, used)
+    within = limits(bound_of(args), used)
     if args.cuts is not None:
         return _by_hand(args, loaded, mesh, within)
     return find_seams(mesh, within, neck=used.material.neck, progress=lambda done: progress(done, "cutting and flattening"))
@@ -306,17 +249,3 @@ def piece_lines(pieces: Sequence[Piece], distortions: Sequence[Distortion]) -> l
         f"d mean {d.mean:.4f} p99 {d.p99:.3f} max {d.max:.3f}"
         for piece, d in zip(pieces, distortions, strict=True)
     ]
-
-
-def place_sensors(skin: Skin, material: Material, file: Path | None) -> tuple[tuple[Sensor, ...], list[str]]:
-    """Sensors as a file says or automatic ones, checked, and what the user should be told."""
-    from skinfab.placement.auto import place
-    from skinfab.placement.check import validate
-    from skinfab.placement.requested import place_from_file
-
-    if file is None:
-        sensors, warnings = place(skin.object, skin.pieces, material=material, seed=skin.seed)
-    else:
-        sensors, warnings = place_from_file(file, skin.object, skin.pieces, material=material, seed=skin.seed)
-    validate(replace(skin, sensors=tuple(sensors)), material)
-    return tuple(sensors), list(warnings)

@@ -7,8 +7,8 @@ import results
 
 from gcode.check_wall import nozzle_margin
 from gcode.printer import load_printer
+from gcode.used import with_room_for_nozzle
 from skinfab.cli.main import main
-from skinfab.cli.nozzle_room import with_room_for_nozzle
 from skinfab.document import load_skin
 from skinfab.material import load_material
 from skinfab.placement.check import edge_curves

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from skinfab.cli.main import main
-from skinfab.document import load_skin
+from skinfab.document import load_skin, save_skin
+from skinfab.seams.edit import forbid, lock
 
 ROOT = Path(__file__).parents[2]
 CUBE = str(ROOT / "meshes/cube.obj")
@@ -79,3 +80,63 @@ def test_wrong_cuts(text: str, status: int, says: str, tmp_path: Path, capsys: p
 def test_complete_needs_cuts(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["segment", CUBE, "-o", str(tmp_path / "o.skin"), "--complete"]) == 2
     assert "--cuts" in capsys.readouterr().err
+
+
+def marked_cube(path: Path) -> set[tuple[int, int]]:
+    """A document of the cube with two of its edges locked and one forbidden; the locked ones."""
+    assert main(["segment", CUBE, "-o", str(path)]) == 0
+    skin = load_skin(path)
+    topology = skin.mesh.topology
+    sharp = np.flatnonzero(np.linalg.norm(np.diff(skin.mesh.V[topology.E], axis=1)[:, 0], axis=1) < 41)
+    seams = set(map(tuple, skin.seams.tolist()))
+    free = [k for k in sharp if tuple(topology.E[k].tolist()) not in seams]
+    taken = topology.edge_ids(skin.seams)[:1]
+    save_skin(forbid(lock(skin, free[:2]), taken), path)
+    return set(map(tuple, topology.E[free[:2]].tolist()))
+
+
+def test_a_document_is_cut_anew_by_its_marks(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    locked = marked_cube(tmp_path / "a.skin")
+    assert main(["segment", str(tmp_path / "a.skin"), "-o", str(tmp_path / "b.skin")]) == 0
+    assert "1 piece, 280 mm of seam" in capsys.readouterr().out
+    before, after = load_skin(tmp_path / "a.skin"), load_skin(tmp_path / "b.skin")
+    assert before.marks is not None and after.marks is not None
+    seams = set(map(tuple, after.seams.tolist()))
+    assert locked <= seams and len(seams) == 7
+    assert not seams & set(map(tuple, before.marks.forbidden.tolist()))
+    np.testing.assert_array_equal(after.marks.locked, before.marks.locked)
+
+
+def test_a_document_without_marks_is_cut_as_its_mesh(tmp_path: Path) -> None:
+    mesh = str(ROOT / "meshes/human_finger.obj")
+    assert main(["segment", mesh, "-o", str(tmp_path / "a.skin"), "--max-distortion", "4.08", "--seed", "3"]) == 0
+    assert main(["segment", str(tmp_path / "a.skin"), "-o", str(tmp_path / "b.skin")]) == 0
+    assert (tmp_path / "a.skin").read_bytes() == (tmp_path / "b.skin").read_bytes()
+    assert load_skin(tmp_path / "b.skin").max_distortion == 4.08
+    assert main(["segment", str(tmp_path / "a.skin"), "-o", str(tmp_path / "c.skin"), "--max-distortion", "4.2"]) == 0
+    assert load_skin(tmp_path / "c.skin").max_distortion == 4.2
+
+
+def test_sensors_of_a_document_follow(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    document = tmp_path / "a.skin"
+    assert main(["segment", CUBE, "-o", str(document)]) == 0
+    assert main(["place", str(document)]) == 0
+    ids = [s.id for s in load_skin(document).sensors]
+    assert main(["segment", str(document), "-o", str(tmp_path / "b.skin")]) == 0
+    assert ids and [s.id for s in load_skin(tmp_path / "b.skin").sensors] == ids
+    assert "taken off" not in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("words", [["--cuts", "x"], ["--units", "mm"], ["--wrap", "8"], ["--thickness", "2"]])
+def test_what_goes_with_a_mesh_only(words: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["segment", CUBE, "-o", str(tmp_path / "a.skin")]) == 0
+    assert main(["segment", str(tmp_path / "a.skin"), "-o", str(tmp_path / "b.skin"), *words]) == 2
+    assert "go with a mesh" in capsys.readouterr().err and not (tmp_path / "b.skin").exists()
+
+
+def test_marks_that_forbid_everything_are_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["segment", CUBE, "-o", str(tmp_path / "a.skin")]) == 0
+    skin = load_skin(tmp_path / "a.skin")
+    save_skin(forbid(skin, np.arange(len(skin.mesh.topology.E))), tmp_path / "a.skin")
+    assert main(["segment", str(tmp_path / "a.skin"), "-o", str(tmp_path / "b.skin")]) == 3
+    assert "the forbidden edges leave no seam" in capsys.readouterr().err and not (tmp_path / "b.skin").exists()
