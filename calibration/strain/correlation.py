@@ -21,7 +21,7 @@ STEP_S = 0.01
 #: Degree of the curve: the paper needed 3 and 4.
 DEGREE = 4
 #: A grain of ridge: behind wide slack, or in a short overlap, high powers may be alike.
-_RIDGE = 1e-9
+_RIDGE = 1e-11
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,7 +79,7 @@ class Sums:
 
         A = np.empty((len(grid), p, p))
         A[:, rows, columns] = A[:, columns, rows] = against(w, X[:, rows] * X[:, columns])
-        return cls(A, against(y, X), against(y * y, pair.angle_known.astype(float)[:, None])[:, 0])
+        return cls(A, against(y, X), against(y * y, X[:, :1])[:, 0])
 
     @property
     def n(self) -> FloatArray:
@@ -109,9 +109,10 @@ def total(parts: Sequence[Sums]) -> Sums:
 
 
 def powers_of(pair: Pair, width: float, low: float, high: float) -> FloatArray:
-    """Chebyshev polynomials of the angle behind play, 0 where it is not known."""
+    """Chebyshev polynomials of the angle behind play, 0 where it is not known: until the slack was once used up, it is not."""
+    used_up = np.maximum.accumulate(pair.angle) - np.minimum.accumulate(pair.angle) >= 2 * width
     x = np.clip((2 * play(pair.angle, width) - low - high) / (high - low), -1.0, 1.0)
-    return np.asarray(np.polynomial.chebyshev.chebvander(x, DEGREE) * pair.angle_known[:, None], dtype=np.float64)
+    return np.asarray(np.polynomial.chebyshev.chebvander(x, DEGREE) * (pair.angle_known & used_up)[:, None], dtype=np.float64)
 
 
 def least(unexplained: FloatArray) -> FloatArray:
@@ -124,7 +125,7 @@ def least(unexplained: FloatArray) -> FloatArray:
     with np.errstate(invalid="ignore", divide="ignore"):
         bend = left - 2 * middle + right
         lowest = middle - (left - right) ** 2 / (8 * bend)
-        inner = (bend > 0) & (np.abs(left - right) <= 2 * bend)  # else the least lies at an end
+        inner = np.isfinite(bend) & (bend > 0) & (np.abs(left - right) <= 2 * bend)  # else the least lies at an end
     tried = unexplained.min(axis=0)
     out: FloatArray = np.where(inner, np.clip(lowest, 0.0, tried), tried)
     return out

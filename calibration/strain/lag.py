@@ -27,7 +27,7 @@ SLACKS = tuple(k / 80 for k in range(21))
 #: Near the best one they are tried in finer steps, so many to either side, this part of a step each.
 _FINER, _PART = 6, 0.5
 #: So many strokes (the joint bent, or stretched) it takes at least; and no more groups than that are left out in turn.
-MIN_STROKES, MAX_GROUPS = 4, 12
+MIN_STROKES, MAX_GROUPS = 3, 12
 #: A stroke is a movement over this part of the span.
 _STROKE = 0.25
 #: The joint must move by this, deg, or noise of the markers is all there is.
@@ -36,9 +36,10 @@ MIN_SPAN_DEG = 5.0
 MIN_EXPLAINED = 0.5
 #: Lags are searched by this, s, to either side of the best one when strokes are left out.
 _NEAR_S = 0.5
-#: Another lag fits as well where it is worse by less than so many standard errors over the strokes, or explains all but this
-#: part of the variance less: nobody would tell two clocks apart by the third digit of R2.
-_ERRORS, _ALIKE = 2.0, 1e-3
+#: Another lag fits as well where it is worse by less than so many standard errors over the strokes, and leaves no more
+#: unexplained than the F distribution gives in one draw of forty, a stroke counting as one sample; or where it explains all
+#: but this part of the variance less: nobody would tell two clocks apart by the third digit of R2.
+_ERRORS, _TAIL, _ALIKE = 2.0, 0.975, 1e-3
 #: Lags nearer to each other than this part of a stroke are one: a valley of what is left unexplained may have ripples.
 _ONE = 0.5
 #: So many other valleys are looked at.
@@ -111,8 +112,9 @@ def find_lag(pairs: Sequence[Pair], lags: tuple[float, float], *, least_overlap_
         enough = sums.n * STEP_S >= max(least_overlap_s, 2 * DEGREE * STEP_S)
         row[:] = np.where(enough, sums.unexplained(), np.inf)
     profile = least(unexplained)
-    best = int(np.argmin(profile))
-    if not profile[best] < 1 - MIN_EXPLAINED:
+    valleys = _valleys(profile)
+    best = min(valleys, key=lambda k: float(profile[k]), default=int(np.argmin(profile)))
+    if not (valleys and profile[best] < 1 - MIN_EXPLAINED):
         explained = max(1 - float(profile[best]), 0.0)
         raise InputError(
             f"no shift from {lags[0]:.1f} to {lags[1]:.1f} s lets the reading follow the angle (R2 {explained:.2f} at best): is it "
@@ -141,6 +143,12 @@ def find_lag(pairs: Sequence[Pair], lags: tuple[float, float], *, least_overlap_
         float(1 - profile[chosen]),
         tuple(float(grid[k] * STEP_S) for k in alike[1:]),
     )
+
+
+def _valleys(profile: FloatArray) -> list[int]:
+    """Where it is less than on either side: at the ends of the search it only falls on towards what is not known."""
+    found: list[int] = (np.flatnonzero((profile[1:-1] <= profile[:-2]) & (profile[1:-1] < profile[2:])) + 1).tolist()
+    return found
 
 
 def _strokes(pairs: Sequence[Pair], low: float, high: float, lag: int) -> list[list[tuple[int, slice]]]:
@@ -212,20 +220,23 @@ def _alike(
     groups: Sequence[Sequence[tuple[int, slice]]],
 ) -> list[int]:
     """Places of the lags that fit as well as the best one, which comes first."""
+    from scipy.stats import f
+
     profile = least(unexplained)
-    best = int(np.argmin(profile))
+    valleys = sorted(_valleys(profile), key=lambda k: float(profile[k]))
+    best = valleys[0]
     apart = _ONE * float(np.median([where.stop - where.start for group in groups for _, where in group]))
-    bottoms = np.flatnonzero((profile[1:-1] <= profile[:-2]) & (profile[1:-1] < profile[2:])) + 1
     found = [best]
     ours = _group_errors(pairs, powers[int(np.argmin(unexplained[:, best]))], grid[best : best + 1], groups)
-    for rival in sorted(bottoms.tolist(), key=lambda k: float(profile[k]))[:_RIVALS]:
+    for rival in valleys[1 : 1 + _RIVALS]:
         if profile[rival] > 1 - MIN_EXPLAINED or min(abs(rival - k) for k in found) < apart:
             continue
         theirs = _group_errors(pairs, powers[int(np.argmin(unexplained[:, rival]))], grid[rival : rival + 1], groups)
         more = (theirs - ours)[np.isfinite(ours) & np.isfinite(theirs)]
-        error = np.std(more, ddof=1) / np.sqrt(len(more)) if len(more) > 1 else np.inf
+        unclear = profile[rival] <= profile[best] * f.ppf(_TAIL, len(groups), len(groups))
+        unclear &= len(more) < 2 or bool(np.mean(more) <= _ERRORS * np.std(more, ddof=1) / np.sqrt(len(more)))
         # Neither lies on the grid: what that costs is no difference between them.
-        if np.mean(more) <= _ERRORS * error or bottom(profile, rival) - bottom(profile, best) <= _ALIKE:
+        if unclear or bottom(profile, rival) - bottom(profile, best) <= _ALIKE:
             found.append(rival)
     return found
 

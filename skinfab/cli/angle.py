@@ -154,8 +154,8 @@ def _added(args: argparse.Namespace, made: Markers, angle: Any, notes: list[str]
     if len(again):
         k = int(again[0])
         raise InputError(
-            f"{path}, frame {k + 2}: times go back from {since[k]:g} to {since[k + 1]:g} s, as when the board restarts, so that what follows "
-            "has no place in the capture's time; cut the log there and give each part a --shift of its own"
+            f"{path}, frame {k + 2}: times go back from {since[k]:g} to {since[k + 1]:g} s, as when the board restarts, so that what "
+            "follows has no place in the capture's time; cut the log there and give each part a --shift of its own"
         )
     shift = _shift(args, old, since, made, angle, clock)
     # A straight line to a frame without an angle has none: nothing is carried over a gap.

@@ -1,6 +1,7 @@
 """`skinfab angle`: from captures to a log, alone or beside readings, which calibrate then takes."""
 
 import json
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -62,6 +63,55 @@ def test_beside_readings_for_calibrate(tmp_path: Path, capsys: pytest.CaptureFix
     assert result["r2"] > 0.9999 and result["held_out_rms_deg"] < 0.2
 
 
+def irregular(t: np.ndarray) -> np.ndarray:
+    return 45 - 40 * np.cos(2 * np.pi * t / 8 - 4 * np.sin(2 * np.pi * t / 37))
+
+
+def capture_and_log(
+    tmp_path: Path, moves: Callable[[np.ndarray], np.ndarray], *, channels: tuple[str, ...] = ("U",), restart: bool = False
+) -> None:
+    """`a.c3d` of 30 s, and `u.mcap`, whose time was 1.37 s when the capture began."""
+    time = np.arange(3000) / 100
+    bent, zero = np.radians(moves(time)), np.zeros(3000)
+    pip = np.stack([40 + zero, zero, 800 + zero], axis=1)
+    dip = pip + 25 * np.stack([np.cos(bent), np.sin(bent), zero], axis=1)
+    write_c3d(tmp_path / "a.c3d", {"MCP": pip - [40.0, 0, 0], "PIP": pip, "DIP": dip}, rate=100.0)
+    late = moves(time - 1.37)
+    reading = 2.5 * (1 + 2e-3 * late + 2e-5 * late**2)
+    values = np.column_stack([reading] + [np.cos(time)] * (len(channels) - 1))
+    stream = Stream("finger", tuple(Channel(name, "V") for name in channels), 100.0)
+    device_time = 1000 + np.where(time >= 20, time - 20, time) if restart else 1000 + time
+    write_log(Recording.of_values(stream, values, device_time=device_time), tmp_path / "u.mcap")
+
+
+def test_the_shift_is_found(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    capture_and_log(tmp_path, irregular, channels=("U", "V"))
+    words = ["angle", str(tmp_path / "a.c3d"), *WORDS, "--log", str(tmp_path / "u.mcap"), "--shift", "auto"]
+    assert main([*words, "-o", str(tmp_path / "b.mcap")]) == 1
+    assert "say with --signal which one goes with this joint: U, V" in capsys.readouterr().err
+    assert main([*words, "--signal", "U", "-o", str(tmp_path / "b.mcap"), "--json"]) == 0
+    result = json.loads(capsys.readouterr().out)
+    low, high = result["shift_interval_s"]
+    assert result["shift_s"] == pytest.approx(1.37, abs=0.015) and low <= 1.37 <= high
+    assert main(["calibrate", str(tmp_path / "b.mcap"), "--signal", "U", "--angle", "angle_deg", "-o", str(tmp_path / "o"), "--json"]) == 0
+    made = json.loads(capsys.readouterr().out)
+    assert abs(made["clock"]["lag_s"]) < 0.02 and made["held_out_rms_deg"] < 0.6
+    assert main([*words, "--signal", "U", "-o", str(tmp_path / "c.csv")]) == 0
+    assert f"the capture began {result['shift_s']:.3f} s after the log" in capsys.readouterr().out
+
+
+def test_a_shift_that_cannot_be_told_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    words = ["angle", str(tmp_path / "a.c3d"), *WORDS, "--log", str(tmp_path / "u.mcap"), "-o", str(tmp_path / "b.mcap"), "--shift"]
+    capture_and_log(tmp_path, lambda t: 45 - 40 * np.cos(2 * np.pi * t / 4))
+    assert main([*words, "auto"]) == 1
+    assert "the movement repeats, so that shifts of" in capsys.readouterr().err
+    (tmp_path / "u.mcap").unlink()
+    capture_and_log(tmp_path, irregular, restart=True)
+    assert main([*words, "1.37"]) == 1
+    assert "frame 2001: times go back from 19.99 to 0 s, as when the board restarts" in capsys.readouterr().err
+    assert not (tmp_path / "b.mcap").exists()
+
+
 @pytest.mark.parametrize(
     ("words", "status", "says"),
     [
@@ -72,6 +122,8 @@ def test_beside_readings_for_calibrate(tmp_path: Path, capsys: pytest.CaptureFix
         ([*WORDS, "-o", "x.csv", "--log", "none.csv"], 1, "none.csv"),
         ([*WORDS, "-o", "x.csv", "--shift", "1"], 2, "--log"),
         ([*WORDS, "-o", "x.csv", "--shift", "soon"], 2, "soon"),
+        ([*WORDS, "-o", "x.csv", "--shift", "auto"], 2, "give --log too"),
+        ([*WORDS, "-o", "x.csv", "--log", "a.csv", "--signal", "U"], 2, "give --shift auto too"),
         ([*WORDS, "-o", "x.csv", "--max-gap", "-1"], 2, "-1"),
         (WORDS, 2, "-o"),
     ],

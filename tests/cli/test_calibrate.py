@@ -83,6 +83,54 @@ def test_wrong_usage(
     assert says in capsys.readouterr().err and not out.exists()
 
 
+def test_another_logs_calibration_is_not_overwritten(log: Callable[..., str], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    def words(path: str) -> list[str]:
+        return ["calibrate", path, "--signal", "U", "--angle", "PIP", "--model", "poly", "--degree", "2", "-o", str(tmp_path / "o")]
+
+    assert main(words(log())) == 0
+    assert main(words(log())) == 0  # made anew of the same log
+    before = {path.name: path.read_bytes() for path in (tmp_path / "o").iterdir()}
+    assert main(words(log(name="b.csv", scale=1.1))) == 1
+    assert "calibration.json is there already and is of another log, log.csv; give another -o" in capsys.readouterr().err
+    (tmp_path / "o/calibration.json").write_text("{}")
+    assert main(words(log())) == 1
+    assert "is not a calibration that could be made anew" in capsys.readouterr().err
+    assert {path.name: path.read_bytes() for path in (tmp_path / "o").iterdir()} == before | {"calibration.json": b"{}"}
+
+
+def test_an_interrupted_run_leaves_the_folder_as_it_was(log: Callable[..., str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    words = ["calibrate", log(), "--signal", "U", "--angle", "PIP", "--degree", "2", "-o", str(tmp_path / "o")]
+    assert main([*words, "--model", "poly"]) == 0
+    before = {path.name: path.read_bytes() for path in (tmp_path / "o").iterdir()}
+
+    def interrupted(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("calibration.strain.figure.draw_calibration", interrupted)  # the last file; three are written by then
+    assert main([*words, "--model", "play"]) != 0
+    assert {path.name: path.read_bytes() for path in (tmp_path / "o").iterdir()} == before
+
+
+def test_the_clocks_are_told_and_notes_of_other_tasks(log: Callable[..., str], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    lines = Path(log()).read_text().splitlines()
+    time = np.array([float(line.partition(",")[0]) for line in lines[1:]])
+    warped = 45 - 40 * np.cos(time + 0.6 * np.sin(time / 5))
+    late = 2.5 * (1 + 2e-3 * np.interp(time - 0.3, time, warped))
+    text = "\n".join(f"{t},{a},{u}" for t, a, u in zip(time.tolist(), warped.tolist(), late.tolist(), strict=True))
+    (tmp_path / "late.csv").write_text(f"time,PIP,U\n{text}\n")
+    task = "\n".join(line if k != 500 else line.rpartition(",")[0] + ",4e30" for k, line in enumerate(lines))
+    (tmp_path / "task.csv").write_text(task + "\n")
+    words = ["calibrate", str(tmp_path / "late.csv"), "--signal", "U", "--angle", "PIP", "-o", str(tmp_path / "o")]
+    assert main([*words, "--new-task", str(tmp_path / "task.csv")]) == 0
+    said = capsys.readouterr()
+    assert "readings come 0.30 s after the angles" in said.out
+    assert "the clocks of camera and board do not agree" in said.err and "task.csv, row 500: 'U' is 4e+30" in said.err
+    result = json.loads((tmp_path / "o/result.json").read_text())
+    assert result["clock"]["lag_s"] == pytest.approx(0.3, abs=0.015) and "row 500" in result["new_tasks"][0]["notes"][0]
+    low, high = result["clock"]["interval_s"]
+    assert low <= 0.3 <= high
+
+
 def test_a_place_that_is_none(log: Callable[..., str], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "file").write_text("")
     assert main(["calibrate", log(), "--signal", "U", "--angle", "PIP", "-o", str(tmp_path / "file")]) == 1

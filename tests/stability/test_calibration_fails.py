@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from calibration.strain.calibrate import calibrate
+from calibration.strain.clock import clock_facts
 from calibration.strain.curve import fit_curve
 from calibration.strain.models import MODELS, Samples
 from calibration.strain.prepare import prepare
@@ -87,3 +88,65 @@ def test_a_log_of_one_cycle_is_not_overfitted_in_silence() -> None:
     reading = 1 + 2e-3 * angle
     with pytest.raises(InputError, match=r"hardly ever (rise|fall)"):
         calibrate(prepare(table(angle, reading), signal="U", angle="angle", limits=(10, 80)), model="branches")
+
+
+def test_a_wrong_shift_looks_like_a_good_calibration_and_is_told() -> None:
+    """0.3 s between the clocks of camera and board: models absorb it, R2 and the held-out error look well."""
+    angle = 45 - 40 * np.cos(TIME + 0.6 * np.sin(TIME / 5))
+    reading = 1 + 2e-3 * np.interp(TIME - 0.3, TIME, angle)
+    log = prepare(table(angle, reading), signal="U", angle="angle", limits=(10, 80), u0=1.0)
+    found = calibrate(log)
+    assert found.r2 > 0.8 and min(score.held_out_rms_deg for score in found.scores.values()) < 2
+    facts, notes = clock_facts(log)
+    assert facts is not None and facts["lag_s"] == pytest.approx(0.3, abs=0.015)
+    assert "the readings come 0.30 s after the angles" in notes[0] and "add 0.30 s to --shift of skinfab angle" in notes[0]
+
+
+def test_a_sample_of_4e30_does_not_turn_the_curve() -> None:
+    angle = 45 - 40 * np.cos(TIME)
+    reading = 1 + 2e-3 * angle
+    reading[100] = 4e30
+    assert abs(np.polyfit(angle, reading, 1)[0]) > 1e20  # what a plain fit makes of it
+    log = prepare(table(angle, reading), signal="U", angle="angle", limits=(10, 80))
+    assert any("row 101: 'U' is 4e+30" in note and "the row is left out" in note for note in log.notes)
+    assert calibrate(log).rms_deg < 0.5
+
+
+def test_absurd_readings_for_a_while_are_refused() -> None:
+    angle = 45 - 40 * np.cos(TIME)
+    reading = 1 + 2e-3 * angle
+    reading[1000:1100] = 4e30
+    with pytest.raises(InputError, match=r"4e\+30 in row 1\d\d\d, a relative change of .*, which no sensor has"):
+        prepare(table(angle, reading), signal="U", angle="angle", limits=(10, 80), u0=1.0)
+
+
+@pytest.mark.parametrize(("rest", "refused"), [(0.004, False), (1e-4, True)])
+def test_a_zeroed_log_is_told(rest: float, refused: bool) -> None:
+    """Relative to next to nothing: 1 mV of drift of the reading at rest would move all angles by tens of degrees."""
+    angle = np.maximum(45 - 45 * np.cos(TIME), 0)
+    reading = rest + 2e-3 * angle
+    if refused:
+        with pytest.raises(InputError, match="which no sensor has; if the log was zeroed, add the reading at rest again"):
+            prepare(table(angle, reading), signal="U", angle="angle", limits=(10, 80))
+    else:
+        log = prepare(table(angle, reading), signal="U", angle="angle", limits=(10, 80))
+        assert any("was the log zeroed?" in note for note in log.notes)
+
+
+def test_shuffled_rows_are_not_sorted_out_by_leaving_most_of_them_out() -> None:
+    angle = 45 - 40 * np.cos(TIME)
+    order = np.random.default_rng(0).permutation(len(TIME))
+    rising = np.count_nonzero(TIME[order] >= np.maximum.accumulate(TIME[order]))
+    assert rising < 20  # what leaving out rows that go back would keep of 3200
+    with pytest.raises(InputError, match=r"rows are not in the order of time: row .* sort the rows by time"):
+        prepare(table(angle[order], 1 + 2e-3 * angle[order], TIME[order]), signal="U", angle="angle", limits=(10, 80))
+
+
+def test_a_board_that_restarts_loses_nothing() -> None:
+    angle = 45 - 40 * np.cos(TIME)
+    time = np.concatenate([TIME[:1600], TIME[:1600]])
+    assert np.count_nonzero(time > np.r_[-1, np.maximum.accumulate(time)[:-1]]) == 1600  # rows that go back, left out: half of them
+    log = prepare(table(angle, 1 + 2e-3 * angle, time), signal="U", angle="angle", limits=(10, 80))
+    assert [len(run.time) for run in log.runs] == [1600, 1600]
+    assert any("row 1601: times begin anew (15.99 to 0 s), as when the device restarts" in note for note in log.notes)
+    assert calibrate(log).rms_deg < 0.5
