@@ -22,7 +22,7 @@ class PiecesPanel(ttk.Frame):
         ttk.Label(self, textvariable=self.summary, style="Faint.TLabel", wraplength=290, name="summary").pack(anchor="w", pady=(0, 2))
         rows = ttk.Frame(self)
         rows.pack(fill="both", expand=True)
-        self.list = ttk.Treeview(rows, columns=[c[0] for c in _COLUMNS], show="headings", height=3, selectmode="browse", name="list")
+        self.list = ttk.Treeview(rows, columns=[c[0] for c in _COLUMNS], show="headings", height=2, selectmode="browse", name="list")
         for name, heading, width in _COLUMNS:
             self.list.heading(name, text=heading)
             self.list.column(name, width=width, minwidth=width, anchor="w" if name == "id" else "e", stretch=name == "size")

@@ -30,7 +30,7 @@ _REST_MS = 250
 _UNITS = {"mm": "mm", "count": "", "switch": ""}
 
 #: Name, label and unit of the fields for where a sensor lies and how it is read.
-_PLACE = (("x", "x", "mm"), ("y", "y", "mm"), ("angle", "turned", "deg"), ("channel", "channel", ""))
+_PLACE = (("x", "x", "mm"), ("y", "y", "mm"), ("angle", "turn", "deg"), ("channel", "ch", ""))
 
 
 class SensorForm(ttk.Frame):
@@ -116,7 +116,7 @@ class SensorForm(ttk.Frame):
 
     def _field(self, master: tk.Misc, name: str, label: str, unit: str, tip: str, *, at: int) -> Field:
         field = Field(
-            master, label, unit=unit, tip=tip, name=name, complain=self._complain, width=7, take=lambda text: self._take(name, text)
+            master, label, unit=unit, tip=tip, name=name, complain=self._complain, width=8, take=lambda text: self._take(name, text)
         )
         field.grid(row=at // 2, column=at % 2, sticky="ew", pady=1, padx=(0, 4))
         return field
@@ -181,7 +181,7 @@ class SensorForm(ttk.Frame):
                 surfaces_of, surfaces, found = outcome.result
                 self._surfaces = surfaces_of, surfaces
                 mean, most = round(100 * found.mean, 2) + 0.0, round(100 * found.max, 1) + 0.0  # no minus before zero
-                words = f"\nworn: stretched by {mean:.2f} % in the mean, at most {most:.1f} %, resistance x {found.resistance_factor:.3f}"
+                words = f"\nworn: stretched {mean:.2f} % (at most {most:.1f} %), R x {found.resistance_factor:.3f}"
             self._strain = sensor, skin.mesh, words
             if words:
                 self.refresh()
@@ -204,6 +204,6 @@ def _two_columns(master: tk.Misc, name: str) -> ttk.Frame:
 def _words(sensor: Sensor, known: Prediction) -> str:
     r = known.resistance
     return (
-        f"{sensor.pattern.kind} on {sensor.piece}: {known.length:.1f} mm long, {known.ink_mm3:.1f} mm³ of ink\n"
-        f"R0 about {r.median:.0f} kohm, nine prints in ten from {r.low:.0f} to {r.high:.0f}"
+        f"{sensor.pattern.kind} on {sensor.piece}: {known.length:.1f} mm, {known.ink_mm3:.1f} mm³ of ink\n"
+        f"R0 {r.median:.0f} kohm, nine in ten from {r.low:.0f} to {r.high:.0f}"
     )
