@@ -38,7 +38,7 @@ def draw_loop(loop: Loop, path: str | Path, *, title: str, latency_s: np.ndarray
         )
     left.set_xlabel("time (s)", fontsize=8)
     left.set_ylabel("PIP angle (deg)", fontsize=8)
-    left.legend(fontsize=6, frameon=False)
+    left.legend(fontsize=6, frameon=False, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, borderaxespad=0.1)
     taken = 1e3 * (loop.latency_s if latency_s is None else latency_s)
     taken = taken[np.isfinite(taken)]
     if len(taken):
