@@ -22,6 +22,9 @@ from skinfab.pieces import Piece
 from skinfab.tolerances import CAVITY_FRACTION, MOULD_GRID_MM, MOULD_SLIT_MM, OVERLAP_FRACTION, PRINTABLE_WALL_MM
 from skinfab.wire_exits import WirePad, WireSlot, exit_warnings, plan_exits, slot_region, through_wall
 
+#: A lip is planned from what lies within so many walls of it: one to keep away, and two and a half (the longest mitre of half
+#: a wall) from where the rest is cut off.
+_NEAR_WALLS = 4
 #: How often wires whose ways out end at lips are planned anew.
 _EXIT_TRIES = 5
 
@@ -306,16 +309,20 @@ def _lip_region(
         run = shapely.LineString(points)
         # The outline is counter-clockwise: the outside is on the right, which shapely calls negative.
         strip: BaseGeometry = run.buffer(-mould.lip, single_sided=True, join_style="mitre", mitre_limit=2)
-        others = boundary - run.buffer(MOULD_SLIT_MM)
+        # Only what is near is looked at: each of hundreds of lips sees a few edges of thousands.
+        near = box(*(shapely.total_bounds([run, strip]) + _NEAR_WALLS * mould.wall * np.array([-1, -1, 1, 1])))
+        silicone = brim & near
+        others = (boundary & near) - run.buffer(MOULD_SLIT_MM)
+        before = [other for other in strips if other.intersects(near)]
         # On one grid GEOS cannot lose its way: in floating point a thousand-edged outline made it give up.
-        strip = _on_grid(_on_grid(strip) - brim - shapely.union_all([others, *strips]).buffer(mould.wall) - ways_out)
+        strip = _on_grid(_on_grid(strip) - silicone - shapely.union_all([others, *before]).buffer(mould.wall) - ways_out)
         # What is left between two darts may be a splinter that tears off with the skin: it goes. The chinks
         # that this leaves towards the cavity would be films of plastic: they are filled again.
         half = mould.wall / 2
         broad = strip.buffer(-half, join_style="mitre").buffer(half, join_style="mitre")
-        joined = (broad | brim).buffer(half, join_style="mitre").buffer(-half, join_style="mitre")
-        parts = _on_grid(shapely.intersection(_on_grid(broad | (joined - brim)), strip, grid_size=MOULD_GRID_MM)).geoms
-        strips.append(MultiPolygon([part for part in parts if (part & broad).area > half**2 and part.distance(brim) < MOULD_SLIT_MM]))
+        joined = (broad | silicone).buffer(half, join_style="mitre").buffer(-half, join_style="mitre")
+        parts = _on_grid(shapely.intersection(_on_grid(broad | (joined - silicone)), strip, grid_size=MOULD_GRID_MM)).geoms
+        strips.append(MultiPolygon([part for part in parts if (part & broad).area > half**2 and part.distance(silicone) < MOULD_SLIT_MM]))
     return _on_grid(shapely.union_all(strips) - brim)
 
 
