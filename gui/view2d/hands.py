@@ -76,8 +76,9 @@ class Hands:
             ("<Button-5>", lambda e: self._wheel(e, 1 / _ZOOM)),
             ("<MouseWheel>", lambda e: self._wheel(e, _ZOOM ** (1 if e.delta > 0 else -1))),
             ("<Escape>", self._escape),
+            ("<Destroy>", self._stop),
         ):
-            widget.bind(event, callback)
+            widget.bind(event, callback, add=True)
         bind_keys(view)
 
     def changes_skin(self) -> bool:
@@ -264,6 +265,13 @@ class Hands:
             self._resting = None
         self.sensors, self.findings, self.guides, self.rectangle = (), {}, _NOWHERE, None
         self._pressed, self._grabbed, self._panned, self._tool_has_it = None, None, None, False
+
+    def _stop(self, _: tk.Event) -> None:
+        """The window is closed: nothing follows any more."""
+        self._drop_hold()
+        if self._waiting is not None:
+            self._view.after_cancel(self._waiting)
+            self._waiting = None
 
     # Selecting
 

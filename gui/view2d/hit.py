@@ -33,7 +33,7 @@ class Hit2D:
         Weights of the mesh face's corners; NaN beside all pieces.
     uv : (2,) float, mm of the piece; NaN beside all pieces
     point : (3,) float, mm
-        On the mesh; NaN beside all pieces.
+        On the object; NaN beside all pieces.
     vertex : int
         Of the mesh: the corner of that face that is nearest; -1 beside all pieces.
     edge : int
@@ -85,7 +85,7 @@ def hit(skin: Skin, sheet: Sheet, lines: Lines, at: Float, triangle: int, *, rea
         face,
         weights,
         at - sheet.offset[k],
-        weights @ skin.mesh.V[corners],
+        weights @ skin.object.V[corners],
         int(corners[np.argmax(weights)]),
         edge,
         target,

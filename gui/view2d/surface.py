@@ -45,6 +45,8 @@ class Surface(FigureCanvasTkAgg):
         self._kept: NDArray[np.uint8] | None = None
         self._touched: list[Box] = []
         self._waiting: str | None = None
+        self._drawing: str | None = None
+        self.widget.bind("<Destroy>", self._stop, add=True)
 
     @property
     def size(self) -> tuple[int, int]:
@@ -74,6 +76,12 @@ class Surface(FigureCanvasTkAgg):
         self._over()
         self.blit()
 
+    def draw_idle(self) -> None:
+        """Draw everything, soon; many calls are one."""
+        # Also called by matplotlib while it makes the canvas.
+        if getattr(self, "_drawing", None) is None and hasattr(self, "_letters"):
+            self._drawing = self.widget.after_idle(self._draw_now)
+
     def refresh(self) -> None:
         """Draw the moving part anew, soon; many calls are one."""
         if self._waiting is None:
@@ -94,6 +102,17 @@ class Surface(FigureCanvasTkAgg):
         for left, top, right, bottom in map(self._pixels, apart([*before, *self._touched])):
             if right > left and bottom > top:
                 self.blit(Bbox([[left, height - bottom], [right, height - top]]))
+
+    def _draw_now(self) -> None:
+        self._drawing = None
+        self.draw()
+
+    def _stop(self, _: tk.Event) -> None:
+        """The window is closed: nothing is drawn any more."""
+        for waiting in (self._drawing, self._waiting):
+            if waiting is not None:
+                self.widget.after_cancel(waiting)
+        self._drawing = self._waiting = None
 
     def _over(self) -> None:
         pen = Pen(self.get_renderer(), self._letters, self.ratio)
