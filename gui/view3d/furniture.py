@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tkinter as tk
+from dataclasses import replace
 from tkinter import font
 from typing import Literal
 
@@ -51,6 +52,7 @@ class Furniture:
         self._bold = self._font.copy()
         self._bold.configure(weight="bold")
         self._pool: list[tuple[int, int]] = []
+        self._looks: dict[int, tuple[Label, str] | None] = {}
         self._sizes: dict[tuple[str, str], tuple[float, float]] = {}
 
     def labels(self, labels: list[Label], theme: Theme) -> None:
@@ -60,22 +62,31 @@ class Furniture:
         shown = without_overlap(inside, self._size)
         while len(self._pool) < len(shown):
             self._pool.append((self._canvas.create_rectangle(0, 0, 0, 0), self._canvas.create_text(0, 0)))
-        colours = {"piece": theme.text, "sensor": theme.text, "seam": theme.seam}
-        for label, (box, text) in zip(shown, self._pool, strict=False):
-            w, h = self._size(label)
-            # Along the border a label moves inward, so that nothing is cut off.
-            x, y = np.clip([label.x, label.y], [w / 2 + 2, h / 2 + 2], [max(width - w / 2 - 2, 0), max(height - h / 2 - 2, 0)]).tolist()
-            self._canvas.coords(box, x - w / 2, y - h / 2, x + w / 2, y + h / 2)
-            self._canvas.coords(text, x, y)
-            outline = theme.seam if label.kind == "seam" else theme.border
-            self._canvas.itemconfigure(box, fill=theme.panel, outline=outline, state="normal", tags=("label",))
-            used = self._bold if label.kind == "piece" else self._font
-            self._canvas.itemconfigure(
-                text, text=label.text, fill=colours[label.kind], font=used, state="normal", tags=("label", label.kind)
-            )
-        for box, text in self._pool[len(shown) :]:
-            self._canvas.itemconfigure(box, state="hidden", tags=())
-            self._canvas.itemconfigure(text, state="hidden", tags=())
+        looks: list[tuple[Label, str] | None] = [(replace(label, x=0.0, y=0.0), theme.name) for label in shown]
+        for k, (box, text) in enumerate(self._pool):
+            look = looks[k] if k < len(shown) else None
+            if look != self._looks.get(k):  # most labels only move
+                self._looks[k] = look
+                self._dress(box, text, look[0] if look else None, theme)
+            if look is not None:
+                w, h = self._size(look[0])
+                # Along the border a label moves inward, so that nothing is cut off.
+                x = min(max(shown[k].x, w / 2 + 2), max(width - w / 2 - 2, w / 2 + 2))
+                y = min(max(shown[k].y, h / 2 + 2), max(height - h / 2 - 2, h / 2 + 2))
+                self._canvas.coords(box, x - w / 2, y - h / 2, x + w / 2, y + h / 2)
+                self._canvas.coords(text, x, y)
+
+    def _dress(self, box: int, text: int, label: Label | None, theme: Theme) -> None:
+        if label is None:
+            for item in (box, text):
+                self._canvas.itemconfigure(item, state="hidden", tags=())
+            return
+        seam = label.kind == "seam"
+        used = self._bold if label.kind == "piece" else self._font
+        self._canvas.itemconfigure(box, fill=theme.panel, outline=theme.seam if seam else theme.border, state="normal", tags=("label",))
+        self._canvas.itemconfigure(
+            text, text=label.text, fill=theme.seam if seam else theme.text, font=used, state="normal", tags=("label", label.kind)
+        )
 
     def axes(self, camera: Camera, theme: Theme) -> None:
         """The cross of axes, lower left."""

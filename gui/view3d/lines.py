@@ -16,6 +16,10 @@ Int32 = NDArray[np.int32]
 Bytes = NDArray[np.uint8]
 
 
+#: Pixels from one place of a stroke to the next at which is looked whether it is hidden, and how many such places at most.
+_STEP, _MOST_STEPS = 1.5, 2048
+
+
 @dataclass(frozen=True, eq=False)
 class Strokes:
     """Straight strokes in space, grouped into items that have a colour, a width and a meaning; later items lie on top.
@@ -120,31 +124,43 @@ def stroke(
     height, columns = cover.shape
     cover[:] = 0
     owner[:] = -1
+    shown = np.empty(_MOST_STEPS + 1, dtype=np.bool_)
     for s in range(len(item)):
         ax, ay, az = a[s, 0], a[s, 1], a[s, 2]
         dx, dy, dz = b[s, 0] - ax, b[s, 1] - ay, b[s, 2] - az
-        reach = 0.5 * width[item[s]] + 0.5
-        square = dx * dx + dy * dy
+        reach = np.float32(0.5) * width[item[s]] + np.float32(0.5)
         left, right = max(0, int(min(ax, ax + dx) - reach)), min(columns - 1, int(max(ax, ax + dx) + reach))
         top, bottom = max(0, int(min(ay, ay + dy) - reach)), min(height - 1, int(max(ay, ay + dy) + reach))
+        if left > right or top > bottom:
+            continue
+        square = dx * dx + dy * dy
+        # The stroke's own line decides what is hidden, so that a wide one is not cut off where the surface rises beside it.
+        steps = min(int(np.sqrt(square) / _STEP) + 1, _MOST_STEPS)
+        some = False
+        for k in range(steps + 1):
+            t = np.float32(k) / np.float32(steps)
+            shown[k] = seen(ax + t * dx, ay + t * dy, az + t * dz, depth, slack, sharper)
+            some = some or shown[k]
+        if not some:
+            continue
+        inverse = np.float32(1) / square if square > 0 else np.float32(0)
         for row in range(top, bottom + 1):
+            py = np.float32(row) + np.float32(0.5) - ay
             first, last = left, right
-            if abs(dy) > 1e-6 and square > 16 * reach * reach:
+            if square > 16 * reach * reach and abs(dy) > np.float32(1e-6):
                 # A long slanted stroke fills little of its box: only the columns near it on this row.
-                middle = ax + (row + 0.5 - ay) * dx / dy
+                middle = ax + py * dx / dy
                 spread = reach * np.sqrt(square) / abs(dy) + 1
                 first, last = max(left, int(max(middle - spread, 0))), min(right, int(min(middle + spread, columns)))
             for column in range(first, last + 1):
-                px, py = column + 0.5 - ax, row + 0.5 - ay
-                t = min(max((px * dx + py * dy) / square, 0.0), 1.0) if square > 0 else 0.0
+                px = np.float32(column) + np.float32(0.5) - ax
+                t = min(max((px * dx + py * dy) * inverse, np.float32(0)), np.float32(1))
                 ex, ey = px - t * dx, py - t * dy
-                away = reach - np.sqrt(ex * ex + ey * ey)
-                if away <= 0:
+                apart = ex * ex + ey * ey
+                if apart >= reach * reach or not shown[int(t * steps + np.float32(0.5))]:
                     continue
-                much = np.uint8(255 * min(away, 1.0))
-                on_top = item[s] != owner[row, column] and much > 127
-                # The stroke's own line decides, so that a wide one is not cut off where the surface rises beside it.
-                if (much > cover[row, column] or on_top) and seen(ax + t * dx, ay + t * dy, az + t * dz, depth, slack, sharper):
+                much = np.uint8(255 * min(reach - np.sqrt(apart), np.float32(1)))
+                if much > cover[row, column] or (item[s] != owner[row, column] and much > 127):
                     cover[row, column] = much
                     owner[row, column] = item[s]
 

@@ -10,13 +10,17 @@ from numpy.typing import NDArray
 from gui.view3d.camera import Camera
 from gui.view3d.lines import Strokes, lay_over, seen, stroke
 from gui.view3d.raster import project, rasterise
-from gui.view3d.shade import NO_BOARD, Paint, brightness, shade, shine
+from gui.view3d.shade import NO_BOARD, Paint, brightness, shade, shade_quickly, shine
 from gui.view3d.solid import Solid
 from skinfab.mesh.model import Mesh
 
 Float32 = NDArray[np.float32]
 Int32 = NDArray[np.int32]
 Bytes = NDArray[np.uint8]
+
+
+#: With more triangles than this, the light of a picture of a moving object is not smoothed within them.
+_MANY = 20_000
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,12 +132,18 @@ class Painter:
         self._solid, self.camera, self.sharper, self.slack = solid, camera, sharper, solid.slack
 
     def _colours(self, solid: Solid, camera: Camera, paint: Paint, spots: Spots | None) -> None:
-        light = brightness(solid.normals, camera.turn)
-        flat = NO_BOARD if paint.flat is None else paint.flat
         height, width = self._base.shape[:2]
         self._base.reshape(height, -1)[:] = np.tile(paint.background, width)  # whole rows: several times as fast as pixel by pixel
-        look = (paint.colour, paint.tint, paint.tints, paint.background, flat)
-        shade(self.face, self._screen, solid.F, solid.normal, light, solid.name, *look, self.sharper, self._box(solid, camera), self._base)
+        box = self._box(solid, camera)
+        look = paint.colour, paint.tint, paint.tints
+        if self.sharper == 1 and len(solid.F) > _MANY and paint.flat is None:
+            light = brightness(solid.normals[-len(solid.F) :], camera.turn)  # those of the faces come last
+            shade_quickly(self.face, light, solid.name, *look, box, self._base)
+        else:
+            light = brightness(solid.normals, camera.turn)
+            flat = NO_BOARD if paint.flat is None else paint.flat
+            how = solid.F, solid.normal, light, solid.name
+            shade(self.face, self._screen, *how, *look, paint.background, flat, self.sharper, box, self._base)
         if spots is not None and len(spots.points):
             at = camera.to_screen(spots.points).astype(np.float32)
             sizes = spots.radius.astype(np.float32), spots.colour.astype(np.float32)

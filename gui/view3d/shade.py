@@ -50,8 +50,8 @@ class Paint:
 
 
 def brightness(normals: Float32, turn: NDArray[np.float64]) -> Float32:
-    """Cosine between unit normals (q, 3) and the lamp, (q,); `turn` as a camera's."""
-    return normals @ (turn.T @ _LAMP).astype(np.float32)
+    """Cosines between unit normals (q, 3) and the lamp, and between them and the viewer: (q, 2); `turn` as a camera's."""
+    return normals @ np.column_stack([turn.T @ _LAMP, turn[2]]).astype(np.float32)
 
 
 #: Stands for no checker board: compiled code takes one type.
@@ -84,7 +84,7 @@ def shade(
     screen : (n, 3) float32
     F, normal : (m, 3) int32
         Corners, and which row of `light` each corner has.
-    light : (q,) float32
+    light : (q, 2) float32
         As `brightness` gives it.
     name : (m,) int32
         Which row of `colour` and `tint` each face has.
@@ -120,6 +120,7 @@ def shade(
                         green += background[1]
                         blue += background[2]
                         continue
+                    own = name[t]
                     a, b, c = F[t, 0], F[t, 1], F[t, 2]
                     x0, y0 = screen[a, 0], screen[a, 1]
                     x1, y1 = screen[b, 0] - x0, screen[b, 1] - y0
@@ -133,13 +134,13 @@ def shade(
                     u = min(max((px * y2 - py * x2) * inverse, nothing), one)
                     v = min(max((py * x1 - px * y1) * inverse, nothing), one - u)
                     w = one - u - v
-                    cosine = w * light[normal[t, 0]] + u * light[normal[t, 1]] + v * light[normal[t, 2]]
+                    cosine = w * light[normal[t, 0], 0] + u * light[normal[t, 1], 0] + v * light[normal[t, 2], 0]
+                    behind = area > 0  # rows count down
                     glow = one
-                    if area > 0:  # rows count down: seen from behind
+                    if behind:
                         cosine, glow = -cosine, _INSIDE
                     # Half of what is turned away is lit as well, so that no side is a black patch.
                     glow *= _AMBIENT + (one - _AMBIENT) * (half + half * cosine)
-                    own = name[t]
                     if board and flat[own, 0, 0] == flat[own, 0, 0]:
                         s = w * flat[own, 0, 0] + u * flat[own, 1, 0] + v * flat[own, 2, 0]
                         r = w * flat[own, 0, 1] + u * flat[own, 1, 1] + v * flat[own, 2, 1]
@@ -153,6 +154,48 @@ def shade(
             image[row, column, 0] = np.uint8(red * share + half)
             image[row, column, 1] = np.uint8(green * share + half)
             image[row, column, 2] = np.uint8(blue * share + half)
+
+
+@numba.njit(cache=True, nogil=True, fastmath={"nsz", "arcp", "contract", "reassoc"}, error_model="numpy")
+def shade_quickly(
+    face: Int32, light: Float32, name: Int32, colour: Bytes, tint: Bytes, tints: Float32, box: tuple[int, int, int, int], image: Bytes
+) -> None:
+    """The same in a quarter of the time: one brightness for all of a triangle, no averages and no board.
+
+    Parameters
+    ----------
+    face : (rows, columns) int32
+    light : (m, 2) float32
+        Of the triangles' own normals.
+    name, colour, tint, tints, box, image
+        As for `shade`.
+    """
+    top, bottom, left, right = box
+    one, half = np.float32(1), np.float32(0.5)
+    red, green, blue = np.uint8(0), np.uint8(0), np.uint8(0)
+    last = -1
+    for row in range(top, bottom):
+        for column in range(left, right):
+            t = face[row, column]
+            if t < 0:
+                continue
+            if t != last:
+                last = t
+                own = name[t]
+                cosine, glow = light[t, 0], one
+                if light[t, 1] < 0:
+                    cosine, glow = -cosine, _INSIDE
+                glow *= _AMBIENT + (one - _AMBIENT) * (half + half * cosine)
+                k = tint[own]
+                over = tints[k, 3]
+                rest = (one - over) * glow
+                over *= glow
+                red = np.uint8(rest * colour[own, 0] + over * tints[k, 0] + half)
+                green = np.uint8(rest * colour[own, 1] + over * tints[k, 1] + half)
+                blue = np.uint8(rest * colour[own, 2] + over * tints[k, 2] + half)
+            image[row, column, 0] = red
+            image[row, column, 1] = green
+            image[row, column, 2] = blue
 
 
 @numba.njit(cache=True, nogil=True)
