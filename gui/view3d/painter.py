@@ -189,3 +189,5 @@ def warm() -> None:
         Solid.of(mesh), camera, paint, Strokes.polyline(mesh.V, (0, 0, 0), 1.0), spots=Spots(mesh.V[:1], np.ones(1), np.ones((1, 4)))
     )
     painter.is_seen(camera.to_screen(mesh.V))
+    light = np.zeros((1, 2), np.float32)
+    shade_quickly(painter.face, light, np.zeros(1, np.int32), paint.colour, *plain[:2], (0, 16, 0, 16), np.zeros((16, 16, 3), np.uint8))

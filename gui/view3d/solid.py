@@ -58,7 +58,8 @@ class Solid:
         n, m = len(mesh.V), len(mesh.F)
         face, cross = mesh.face_normals, mesh.face_cross
         corners = mesh.F.T.ravel()
-        vertex = np.stack([np.bincount(corners, weights=np.tile(cross[:, k], 3), minlength=n) for k in range(3)], axis=1)
+        sums = (np.bincount(corners, weights=np.tile(cross[:, k], 3), minlength=n) for k in range(3))
+        vertex = np.stack(list(sums), axis=1).astype(np.float64)  # sums of nothing are whole numbers
         length = np.linalg.norm(vertex, axis=1, keepdims=True)
         np.divide(vertex, length, out=vertex, where=length > 0)
         smooth = np.stack([np.einsum("mx,mx->m", vertex[mesh.F[:, k]], face) for k in range(3)], axis=1) >= np.cos(CREASE_RAD)

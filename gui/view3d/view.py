@@ -103,7 +103,7 @@ class View3D(ttk.Frame):
         self._idle = self._rest = ""
         self._moving = False
         self._legend: tuple[object, ...] = ()
-        self._slow = False
+        self._slow = self._gone = False
         Gestures(self)
         self.canvas.bind("<Configure>", self._configured, add=True)
         self.bind("<Destroy>", self._destroyed, add=True)
@@ -176,7 +176,7 @@ class View3D(ttk.Frame):
 
     def redraw(self) -> None:
         """Draw anew as soon as nothing else is waiting; many calls give one picture."""
-        if not self._idle:
+        if not self._idle and not self._gone:  # the session outlives the view, and still calls
             self._idle = self.after_idle(self._draw_idle)
 
     def settle(self) -> None:
@@ -279,5 +279,4 @@ class View3D(ttk.Frame):
     def _destroyed(self, event: tk.Event[tk.Misc]) -> None:
         if event.widget is self:
             self._cancel()
-            # The session outlives the view and still calls: there is nothing to draw on any more.
-            self.redraw = lambda: None  # type: ignore[method-assign]
+            self._gone = True

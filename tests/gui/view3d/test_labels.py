@@ -32,7 +32,7 @@ def test_pieces_bear_their_names_on_themselves(skin):
 
 
 def test_a_piece_that_is_hardly_seen_bears_none(skin):
-    camera = Camera.fitted(skin.mesh.V, 700, 400).seen_from("front").panned(346, 0)
+    camera = Camera.fitted(skin.mesh.V, 700, 400).seen_from("front").panned(348, 0)
     painter, scene = drawn(skin, camera)
     assert [label.text for label in piece_labels(painter, scene.owner(skin), ["P1", "P2"])] == ["P1"]
 

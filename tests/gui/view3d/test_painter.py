@@ -25,8 +25,13 @@ def scene():
 
 def counted(monkeypatch):
     calls = []
+
+    def count(name):
+        really = getattr(module, name)
+        monkeypatch.setattr(module, name, lambda *arguments: calls.append(name) or really(*arguments))
+
     for name in ("rasterise", "shade", "stroke"):
-        monkeypatch.setattr(module, name, lambda *a, f=getattr(module, name), n=name: calls.append(n) or f(*a))
+        count(name)
     return calls
 
 
