@@ -121,6 +121,28 @@ def test_a_closed_loop_leaves_a_lid_and_a_closed_rest() -> None:
     assert all("over the bound 4.05: cut it further, or raise the bound" in text for text in texts(halves)) and len(halves.faults) == 2
 
 
+def test_a_hardly_opened_object_is_shown_all_the_same() -> None:
+    """A conformal layout would be off a thousand times; what is shown is off by little more than it must be."""
+    skin = skin_of(20 * sphere(4)[0], sphere(4)[1])
+    slit = opened(cut_path(skin, [0, int(np.argmin(np.linalg.norm(skin.mesh.V - skin.mesh.V[0] * 0.9 - 4, axis=1)))]))
+    (piece,) = slit.skin.pieces
+    assert slit.faults[0].piece == "P1" and "over the bound 4.05: cut it further" in slit.faults[0].text
+    assert slit.distortions[0].mean < 40 and not slit.distortions[0].flipped and max(piece.size) < 400
+
+
+def test_what_would_dwarf_all_others_is_left_out() -> None:
+    """Rings about a ball's whole surface: a layout would be meters wide."""
+    V, F = sphere(4)
+    skin = skin_of(20 * V, F)
+    for pole in (0, 1, 2, 3):
+        edge = skin.mesh.topology.E[(skin.mesh.topology.E == pole).any(axis=1)][0]
+        further = skin.mesh.topology.E[(skin.mesh.topology.E == edge.sum() - pole).any(axis=1)]
+        skin = cut_path(skin, [pole, int(edge.sum() - pole), int(further[further != edge.sum() - pole][-1])])
+    result = opened(skin)
+    assert "a ring with 4 borders: cut from one border to another" in texts(result)[0]
+    assert all(max(piece.size) < 1000 for piece in result.skin.pieces)
+
+
 def test_a_handle_is_named() -> None:
     V, F = torus(columns=24, rows=12)
     skin = cut_path(skin_of(10 * V, F), [0, 1, 2])
