@@ -70,6 +70,8 @@ import numpy as np
 from skinfab.bench.disks import bumpy_cap
 from skinfab.flatten import bijective
 from skinfab.flatten.disk import flatten_isometric
+from gui.view3d import painter
+painter.warm()
 flatten_isometric(*bumpy_cap(5400))
 turn, r = np.meshgrid(np.linspace(0, 4 * np.pi, 81), np.linspace(1, 2, 5))
 V = np.stack([r.ravel() * np.cos(turn.ravel()), r.ravel() * np.sin(turn.ravel()), 0.3 * turn.ravel()], axis=1)
