@@ -53,6 +53,7 @@ class Furniture:
         self._bold.configure(weight="bold")
         self._pool: list[tuple[int, int]] = []
         self._looks: dict[int, tuple[Label, str] | None] = {}
+        self._legend: tuple[str, str, int] | None = None
         self._sizes: dict[tuple[str, str], tuple[float, float]] = {}
 
     def labels(self, labels: list[Label], theme: Theme) -> None:
@@ -114,7 +115,11 @@ class Furniture:
         )
 
     def legend(self, shading: str, theme: Theme) -> None:
-        """What colours mean, upper right."""
+        """What colours mean, upper right; made anew only where it differs."""
+        key = shading, theme.name, self._canvas.winfo_width()
+        if key == self._legend:
+            return
+        self._legend = key
         self._canvas.delete("legend")
         margin = 14 * self._dpi
         right = self._canvas.winfo_width() - margin
@@ -124,6 +129,12 @@ class Furniture:
             self._words(right, margin, [(f"squares of {CHECK_MM:g} mm on the flat pieces", theme.faint)])
         elif shading == "preferences":
             self._words(right, margin, [("seams attracted", theme.good), ("seams avoided", theme.error)])
+
+    def clear(self, theme: Theme) -> None:
+        """Take all of it away."""
+        self.labels([], theme)
+        self._canvas.delete("axes", "scale", "legend")
+        self._legend = None
 
     def notice(self, words: str, theme: Theme) -> None:
         """In the middle, where there is nothing else."""

@@ -100,6 +100,16 @@ def seen(x: float, y: float, z: float, depth: Float32, slack: float, sharper: in
 
 
 @numba.njit(cache=True, nogil=True)
+def seen_of(screen: Float32, depth: Float32, slack: float, sharper: int) -> NDArray[np.bool_]:
+    """The same for points (k, 3), some of which may be NaN: (k,)."""
+    found = np.zeros(len(screen), dtype=np.bool_)
+    for k in range(len(screen)):
+        x, y, z = screen[k, 0], screen[k, 1], screen[k, 2]
+        found[k] = np.isfinite(x + y + z) and seen(x, y, z, depth, slack, sharper)
+    return found
+
+
+@numba.njit(cache=True, nogil=True)
 def stroke(
     a: Float32, b: Float32, item: Int32, width: Float32, depth: Float32, slack: float, sharper: int, cover: Bytes, owner: Int32
 ) -> None:
@@ -153,6 +163,8 @@ def stroke(
                 spread = reach * np.sqrt(square) / abs(dy) + 1
                 first, last = max(left, int(max(middle - spread, 0))), min(right, int(min(middle + spread, columns)))
             for column in range(first, last + 1):
+                if cover[row, column] == 255 and owner[row, column] == item[s]:
+                    continue
                 px = np.float32(column) + np.float32(0.5) - ax
                 t = min(max((px * dx + py * dy) * inverse, np.float32(0)), np.float32(1))
                 ex, ey = px - t * dx, py - t * dy

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gui.view3d.camera import Camera
-from gui.view3d.lines import Strokes, lay_over, seen, stroke
+from gui.view3d.lines import Strokes, lay_over, seen_of, stroke
 from gui.view3d.raster import project, rasterise
 from gui.view3d.shade import NO_BOARD, Paint, brightness, shade, shade_quickly, shine
 from gui.view3d.solid import Solid
@@ -119,8 +119,8 @@ class Painter:
 
     def is_seen(self, screen: NDArray[np.float64]) -> NDArray[np.bool_]:
         """Which points (k, 3) of the screen (column, row, depth) are in the picture and not hidden, (k,)."""
-        found = [bool(np.isfinite(p).all()) and seen(p[0], p[1], p[2], self.depth, self.slack, self.sharper) for p in screen]
-        return np.array(found, dtype=bool)
+        found: NDArray[np.bool_] = seen_of(screen.astype(np.float32).reshape(-1, 3), self.depth, self.slack, self.sharper)
+        return found
 
     def _triangles(self, solid: Solid, camera: Camera, sharper: int) -> None:
         self._resize(camera.width, camera.height, sharper)

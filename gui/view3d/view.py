@@ -102,7 +102,7 @@ class View3D(ttk.Frame):
         self._detail: Detail | None = None
         self._idle = self._rest = ""
         self._moving = False
-        self._legend: tuple[object, ...] = ()
+        self._labelled: tuple[object, ...] = ()
         self._slow = self._gone = False
         Gestures(self)
         self.canvas.bind("<Configure>", self._configured, add=True)
@@ -209,9 +209,8 @@ class View3D(ttk.Frame):
         if skin is None:
             self._mesh = self._solid = self._detail = None
             self.canvas.itemconfigure(self._picture, state="hidden")
-            self._furniture.labels([], self.theme)
-            self.canvas.delete("axes", "scale", "legend")
-            self._legend = ()
+            self._furniture.clear(self.theme)
+            self._labelled = ()
             return
         self._take(skin, width, height)
         start = time.perf_counter()
@@ -254,16 +253,17 @@ class View3D(ttk.Frame):
 
     def _label(self, skin: Skin) -> None:
         camera, painter, scene = self.camera, self.painter, self.scene
+        labelled = (skin, camera, painter.sharper, self.theme.name, self.session.shading)
+        if labelled == self._labelled:
+            return  # only what lights up has changed
+        self._labelled = labelled
         sensors = [sensor_label(painter, camera, sensor.id, scene.sensor_line(skin, k)) for k, sensor in enumerate(skin.sensors)]
         words = [label for label in sensors if label is not None]
         words += piece_labels(painter, scene.owner(skin), [piece.id for piece in skin.pieces])
         self._furniture.labels(words + seam_labels(painter, camera, scene.labels(skin)), self.theme)
         self._furniture.axes(camera, self.theme)
         self._furniture.scale(camera, self.theme)
-        legend = (self.session.shading, self.theme.name, camera.width, camera.height)
-        if legend != self._legend:
-            self._legend = legend
-            self._furniture.legend(self.session.shading, self.theme)
+        self._furniture.legend(self.session.shading, self.theme)
 
     def _configured(self, event: tk.Event[tk.Misc]) -> None:
         self._moving = self.session.skin is not None

@@ -239,6 +239,17 @@ def test_labels_axes_and_scale_are_there(window):
     assert canvas.find_withtag("legend")
 
 
+def test_hovering_alone_makes_no_label_anew(window, monkeypatch):
+    made = []
+    monkeypatch.setattr(window.view._furniture, "labels", lambda labels, theme: made.append(labels))
+    window.send("<Motion>", window.pixel(22, 41))
+    window.send("<Motion>", window.pixel(82, 41))
+    assert window.session.hovered.piece == "P2" and not made
+    window.view.move(window.view.camera.panned(1, 0))
+    window.root.update()
+    assert len(made) == 1
+
+
 def test_another_document_is_seen_whole_and_the_same_object_from_where_it_was(window, skin):
     window.view.move(window.view.camera.zoomed(3, (100, 100)))
     window.settle()
