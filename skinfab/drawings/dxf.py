@@ -69,6 +69,9 @@ def write_dxf(skin: Skin, path: str | FilePath) -> None:
                 _label(space, label, offset)
         top = max((float((piece.UV + offset)[:, 1].max()) for piece, offset in zip(skin.pieces, offsets, strict=True)), default=0.0)
         _label(space, Label("size", THIS_SIDE_OUT, np.array([0.0, top + 2 * TEXT_MM]), left=True), np.zeros(2))
+        # ezdxf would register them in the order of a set of words, which is another in every process.
+        for kind in sorted(drawing.entitydb.dxf_types_in_use()):
+            drawing.classes.add_class(kind)
         text = io.StringIO()
         drawing.write(text)
     atomic_write(path, text.getvalue())

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
 from collections import Counter
 from itertools import pairwise
 from pathlib import Path
@@ -13,6 +16,7 @@ import pytest
 from ezdxf import options
 from ezdxf.math import bulge_to_arc
 
+from skinfab.document import save_skin
 from skinfab.drawings.dxf import write_dxf
 from skinfab.drawings.sheet import sheet_offsets
 from skinfab.drawings.strokes import short_arcs
@@ -82,3 +86,19 @@ def test_same_skin_same_bytes_and_the_option_is_put_back(skin: Skin, tmp_path: P
         write_dxf(skin, tmp_path / name)
     assert (tmp_path / "a.dxf").read_bytes() == (tmp_path / "b.dxf").read_bytes()
     assert options.write_fixed_meta_data_for_testing is False
+
+
+def test_every_process_writes_the_same_bytes(skin: Skin, tmp_path: Path) -> None:
+    """Sets of words are walked in another order in each: of eight, three wrote another file."""
+    save_skin(skin, tmp_path / "a.skin")
+    program = (
+        "import sys; from skinfab.document import load_skin; from skinfab.drawings.dxf import write_dxf; "
+        "write_dxf(load_skin(sys.argv[1]), sys.argv[2])"
+    )
+    written = set()
+    for seed in "3456":
+        target = tmp_path / f"{seed}.dxf"
+        words = [sys.executable, "-c", program, str(tmp_path / "a.skin"), str(target)]
+        subprocess.run(words, env={**os.environ, "PYTHONHASHSEED": seed}, check=True)
+        written.add(target.read_bytes())
+    assert len(written) == 1
