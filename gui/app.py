@@ -13,6 +13,7 @@ from types import TracebackType
 from typing import get_args
 
 from gui.actions import Action, Actions
+from gui.commands.arrange import ArrangeCommands
 from gui.commands.edit import EditCommands
 from gui.commands.file import FileCommands
 from gui.commands.help import HelpCommands
@@ -38,6 +39,7 @@ from gui.state.profiles import ProfileShelf
 from gui.state.session import Session, Topic
 from gui.state.store import Remembered, recall, remember, state_folder
 from gui.theme import THEMES, apply
+from gui.tools.measure import Measure
 from gui.tools.toolbox import Toolbox
 from gui.view2d.view import View2D
 from gui.view3d.view import View3D
@@ -169,12 +171,14 @@ class App:
     def _connect(self, remembered: Remembered) -> None:
         desk = self.desk
         self.files = FileCommands(desk, self.autosave, remembered, opened=self._opened)
-        self.toolbox = Toolbox(desk, self.view3d, self.view2d, theme=lambda: self.theme, pattern=self.new_sensor.pattern)
+        measure = Measure(desk, self.view3d, self.view2d, self.background, theme=lambda: self.theme)
+        self.toolbox = Toolbox(desk, self.view3d, self.view2d, theme=lambda: self.theme, pattern=self.new_sensor.pattern, more=[measure])
         views = ViewCommands(desk, self.view3d, self.view2d, theme=lambda: self.theme.name, use_theme=self.use_theme)
         actions = [
             *self.files.actions(),
             Action("quit", "Close", "File", self.close, "Control-q"),
             *EditCommands(desk).actions(),
+            *ArrangeCommands(desk).actions(),
             *SeamCommands(desk).actions(),
             *SensorCommands(desk).actions(),
             *self.toolbox.actions(),

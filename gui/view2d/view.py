@@ -66,8 +66,6 @@ class View2D(ttk.Frame):
         super().__init__(master, name=name)
         self.session, self.derived, self.theme = session, derived, theme
         self.on_click, self.on_drag, self.on_release, self.on_point = on_click, on_drag, on_release, on_point
-        #: Is called with a `Hit2D` wherever the pointer goes without a button down.
-        self.on_point: Callable[[Hit2D], object] | None = None
         self.lines, self.live = Lines(), Live()
         self.plane = Plane()
         self.sheet: Sheet | None = None

@@ -225,3 +225,22 @@ def _taut(net: _Net, nodes: Int) -> Float:
     )
     way[free] = a + found.x[:, None] * (b - a)
     return way
+
+
+def angle_between(one: ArrayLike, two: ArrayLike) -> float:
+    """Angle between two directions, rad from 0 to pi; 0 where one of them has no length.
+
+    Of two ways that leave the inside of a face, both first steps lie in its plane, and this is the angle on the surface.
+
+    Examples
+    --------
+    >>> round(float(np.degrees(angle_between((1, 0, 0), (0, 2, 0)))), 9)
+    90.0
+    """
+    a, b = np.asarray(one, dtype=float), np.asarray(two, dtype=float)
+    lengths = float(np.linalg.norm(a) * np.linalg.norm(b))
+    # More exact near 0 and pi than the arc cosine of the product.
+    if lengths == 0:
+        return 0.0
+    a, b = a / np.linalg.norm(a), b / np.linalg.norm(b)
+    return float(2 * np.arctan2(np.linalg.norm(a - b), np.linalg.norm(a + b)))
