@@ -6,6 +6,9 @@ import math
 from dataclasses import replace
 from typing import Literal
 
+import numpy as np
+from numpy.typing import NDArray
+
 from gcode import grbl, marlin
 from gcode.geometry import Curve
 from gcode.grbl import GrblWriter, SpindleGrid
@@ -49,11 +52,38 @@ def emit(program: Program, printer: Printer, *, arcs: Arcs = "native") -> str:
     if arcs == "lines":
         program = with_chords(program, tolerance=printer.process.chord_tolerance)
     program = on_grid_of(program, printer)
+    ending = grbl.ENDING if printer.spindle else ()
+    body = (line for lines in _writer(printer).by_step(program) for line in lines)
+    return "\n".join([*_header(program, printer), *body, END, *ending]) + "\n"
+
+
+def step_lines(program: Program, printer: Printer) -> NDArray[np.int64]:
+    """The first and the last line, counted from 1, that each step of a program has in the text that `emit` makes of it.
+
+    Parameters
+    ----------
+    program : Program
+        On the grid already (`on_grid_of`), so that its steps are those of the text.
+
+    Returns
+    -------
+    (n, 2) int
+    """
+    counts = [len(lines) for lines in _writer(printer).by_step(program)]
+    last = len(_header(program, printer)) + np.cumsum(np.array(counts, dtype=np.int64))
+    return np.stack([last - counts + 1, last], axis=1)
+
+
+def _writer(printer: Printer) -> GrblWriter | MarlinWriter:
+    return GrblWriter(printer.spindle) if printer.spindle else MarlinWriter(printer.pump.e_per_mm3)
+
+
+def _header(program: Program, printer: Printer) -> list[str]:
+    """All lines before the first step's."""
     spindle = printer.spindle
     unit = f"S{spindle.s_per_flow!r} for 1 mm^3/s" if spindle else f"{printer.pump.e_per_mm3!r} mm of E for 1 mm^3"
     reasons, preamble, home = _beginning(printer)
-    writer = GrblWriter(spindle) if spindle else MarlinWriter(printer.pump.e_per_mm3)
-    header = [
+    return [
         TITLE,
         f"; piece {program.name}",
         *emit_comment(f"printer {printer.name}"),
@@ -65,7 +95,6 @@ def emit(program: Program, printer: Printer, *, arcs: Arcs = "native") -> str:
         *home,
         BEGIN,
     ]
-    return "\n".join([*header, *writer.lines(program), END, *(grbl.ENDING if spindle else ())]) + "\n"
 
 
 def on_grid_of(program: Program, printer: Printer) -> Program:

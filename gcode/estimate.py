@@ -11,6 +11,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gcode.geometry import Curve
 from gcode.grbl import spindle_s
@@ -33,10 +34,53 @@ class Summary:
 class _Block:
     """One move as the planner sees it; `into` and `out` are unit vectors in space."""
 
+    step: int
     length: float
     speed: float
     into: tuple[float, float, float]
     out: tuple[float, float, float]
+
+
+@dataclass(frozen=True, eq=False)
+class Timing:
+    """When each of n steps is done.
+
+    Parameters
+    ----------
+    start, duration : (n,) float, s
+        Homing is left out; a comment takes no time.
+    entry, peak, leave : (n,) float
+        Speeds of a move, mm/s of its way (or of E, where only that moves); nan where nothing moves steadily.
+    acceleration : float, mm/s^2
+    """
+
+    start: NDArray[np.float64]
+    duration: NDArray[np.float64]
+    entry: NDArray[np.float64]
+    peak: NDArray[np.float64]
+    leave: NDArray[np.float64]
+    acceleration: float
+
+    def done(self, step: int, time: float) -> float:
+        """The share of its way that a step has gone at a time (s from the start of the program), 0 to 1."""
+        whole = float(self.duration[step])
+        t = min(max(time - float(self.start[step]), 0.0), whole)
+        if whole <= 0.0:
+            return float(time >= self.start[step])
+        entry, peak, leave, a = float(self.entry[step]), float(self.peak[step]), float(self.leave[step]), self.acceleration
+        if math.isnan(peak):
+            return t / whole
+        up, down = (peak - entry) / a, (peak - leave) / a
+        length = _gone(whole, entry, peak, up, whole - down, a)
+        return min(_gone(t, entry, peak, up, whole - down, a) / length, 1.0)
+
+
+def _gone(t: float, entry: float, peak: float, up: float, fall: float, a: float) -> float:
+    """The way after `t` s of speeding up until `up`, and slowing down from `fall`."""
+    gone = entry * min(t, up) + a * min(t, up) ** 2 / 2
+    gone += peak * max(min(t, fall) - up, 0.0)
+    late = max(t - fall, 0.0)
+    return gone + peak * late - a * late**2 / 2
 
 
 def summarise(program: Program, printer: Printer, *, lines: int) -> Summary:
@@ -76,58 +120,67 @@ def print_time(program: Program, printer: Printer) -> float:
     >>> round(print_time(program, load_printer()), 3)  # 100 / 50 + 50 / 500 + 2
     4.1
     """
-    total = 0.0
+    return math.fsum(timing(program, printer).duration)
+
+
+def timing(program: Program, printer: Printer) -> Timing:
+    """When each step of a program is done, see `print_time`."""
+    table = np.full((4, len(program.steps)), math.nan)
+    table[0] = 0.0
     run: list[_Block] = []
     flow = 0.0  # S of a pump that is a spindle: GRBL stops the head before it changes that
     x: float | None = None
     y: float | None = None
     z: float | None = None
-    for step in program.steps:
+    for k, step in enumerate(program.steps):
         if isinstance(step, Comment):
             continue
         if isinstance(step, Travel):
             if flow:  # the pump is turned off, for which GRBL stops
-                total += _run_time(run, printer)
+                _time_run(run, printer, table)
                 run, flow = [], 0.0
             now = (x, y, z)
             x, y, z = (old if new is None else new for old, new in zip(now, (step.x, step.y, step.z), strict=True))
             moved = [0.0 if old is None or new is None else new - old for old, new in zip(now, (x, y, z), strict=True)]
             if (length := math.hypot(*moved)) > 0:
                 unit = (moved[0] / length, moved[1] / length, moved[2] / length)
-                run.append(_Block(length, step.speed, unit, unit))
+                run.append(_Block(k, length, step.speed, unit, unit))
         elif isinstance(step, Extrude):
             if printer.spindle and (asked := spindle_s(step, printer.spindle)) != flow:
-                total += _run_time(run, printer)
+                _time_run(run, printer, table)
                 run, flow = [], asked
             into, out = step.shape.directions
-            run.append(_Block(step.shape.length, step.speed, (*into, 0.0), (*out, 0.0)))
+            run.append(_Block(k, step.shape.length, step.speed, (*into, 0.0), (*out, 0.0)))
             x, y = step.shape.end
         else:
             # A command at standstill ends the run: the head stops before it and starts anew after it.
-            total += _run_time(run, printer)
+            _time_run(run, printer, table)
             run, flow = [], 0.0
             if isinstance(step, (Dwell, Clean)):
-                total += step.seconds
+                table[0, k] = step.seconds
             elif isinstance(step, (Prime, Retract)):
                 if printer.spindle:
-                    total += step.volume / step.rate
+                    table[0, k] = step.volume / step.rate
                     continue
                 e = step.volume * printer.pump.e_per_mm3
-                total += _trapezoid(e, step.rate * printer.pump.e_per_mm3, 0.0, 0.0, printer.motion.acceleration)
-    return total + _run_time(run, printer)
+                table[:, k] = _trapezoid(e, step.rate * printer.pump.e_per_mm3, 0.0, 0.0, printer.motion.acceleration)
+    _time_run(run, printer, table)
+    start = np.concatenate([[0.0], np.cumsum(table[0])[:-1]])[: table.shape[1]]
+    return Timing(start, *table, acceleration=printer.motion.acceleration)
 
 
-def _run_time(run: list[_Block], printer: Printer) -> float:
-    """Time of moves without a stop between them, s, from rest to rest."""
+def _time_run(run: list[_Block], printer: Printer, table: NDArray[np.float64]) -> None:
+    """Times and speeds of moves without a stop between them, from rest to rest, into the columns of their steps."""
     if not run:
-        return 0.0
+        return
     a = printer.motion.acceleration
     joints = [0.0, *(_junction_speed(one, two, printer) for one, two in itertools.pairwise(run)), 0.0]
     for k in range(len(run) - 1, -1, -1):  # slow down in time for what comes
         joints[k] = min(joints[k], math.sqrt(joints[k + 1] ** 2 + 2 * a * run[k].length))
     for k in range(len(run)):  # and speed up no faster than can be
         joints[k + 1] = min(joints[k + 1], math.sqrt(joints[k] ** 2 + 2 * a * run[k].length))
-    return math.fsum(_trapezoid(b.length, b.speed, joints[k], joints[k + 1], a) for k, b in enumerate(run))
+    for k, b in enumerate(run):
+        table[:, b.step] = _trapezoid(b.length, b.speed, joints[k], joints[k + 1], a)
 
 
 def _junction_speed(one: _Block, two: _Block, printer: Printer) -> float:
@@ -141,8 +194,8 @@ def _junction_speed(one: _Block, two: _Block, printer: Printer) -> float:
     return min(limit, math.sqrt(printer.motion.acceleration * printer.motion.junction_deviation * half_sine / (1 - half_sine)))
 
 
-def _trapezoid(length: float, speed: float, entry: float, leave: float, a: float) -> float:
-    """Time over `length` from `entry` to `leave`, at most at `speed`, with acceleration `a`, s."""
+def _trapezoid(length: float, speed: float, entry: float, leave: float, a: float) -> tuple[float, float, float, float]:
+    """Time (s) over `length` from `entry` to `leave`, at most at `speed`, with acceleration `a`; the speeds at its start, most and end."""
     peak = min(speed, math.sqrt(a * length + (entry**2 + leave**2) / 2))
     ramps = (2 * peak**2 - entry**2 - leave**2) / (2 * a)
-    return (2 * peak - entry - leave) / a + max(length - ramps, 0.0) / peak
+    return (2 * peak - entry - leave) / a + max(length - ramps, 0.0) / peak, entry, peak, leave

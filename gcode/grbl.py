@@ -104,9 +104,11 @@ class GrblWriter:
         self.feed = ""
         self.pump = "M5"
 
-    def lines(self, program: Program) -> list[str]:
-        """The lines of all steps, the pump at rest at the end."""
-        return [*(line for step in program.steps for line in self._lines(step)), *self._turn("M5")]
+    def by_step(self, program: Program) -> list[list[str]]:
+        """The lines of each step, the pump at rest at the end."""
+        lines = [self._lines(step) for step in program.steps]
+        lines[-1:] = [last + self._turn("M5") for last in lines[-1:]]
+        return lines
 
     def _lines(self, step: Step) -> list[str]:
         if isinstance(step, Travel):

@@ -43,8 +43,9 @@ class MarlinWriter:
         self.e_per_mm3 = e_per_mm3
         self.feed = ""
 
-    def lines(self, program: Program) -> list[str]:
-        return [self._line(step) for step in program.steps]
+    def by_step(self, program: Program) -> list[list[str]]:
+        """The lines of each step."""
+        return [[self._line(step)] for step in program.steps]
 
     def _line(self, step: Step) -> str:
         if isinstance(step, Travel):

@@ -53,6 +53,7 @@ class Stroke:
     at: Point
     width: float
     pattern: str
+    line: int = 0  # of the text
 
 
 def strokes(judged: Trace, printer: Printer) -> Iterator[Stroke]:
@@ -73,11 +74,11 @@ def strokes(judged: Trace, printer: Printer) -> Iterator[Stroke]:
         if move.shape is not None:
             role = _role(move, printer, beyond)
             width = 2 * bead_radius(move, printer) if role in _INKED else _THIN if role == "travel" else 2 * _THIN
-            yield Stroke(role, move.shape, (x, y), width, move.pattern)
+            yield Stroke(role, move.shape, (x, y), width, move.pattern, move.line)
         elif move.e and not move.is_planar:
-            yield Stroke("prime" if move.e > 0 else "retract", None, (x, y), _DOT, move.pattern)
+            yield Stroke("prime" if move.e > 0 else "retract", None, (x, y), _DOT, move.pattern, move.line)
         if move.line in cleaned:
-            yield Stroke("cleaning", None, (x, y), 2 * _DOT, move.pattern)
+            yield Stroke("cleaning", None, (x, y), 2 * _DOT, move.pattern, move.line)
 
 
 def _said(judged: Trace) -> tuple[set[int], set[int]]:

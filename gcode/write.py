@@ -116,6 +116,19 @@ def write_previews(skin: Skin, written: Sequence[PieceGcode], folder: str | Path
     return tuple(targets)
 
 
+def drawn_with(arcs: Arcs, program: Program, printer: Printer) -> Program:
+    """A planned program with its arcs as they are, or as chords.
+
+    Raises
+    ------
+    RefusedError
+        The printer draws no arcs.
+    """
+    if arcs == "native" and not printer.arcs:
+        raise RefusedError(f"{printer.name} draws no arcs (its profile says arcs = false); emit with --arcs lines")
+    return on_grid_of(with_chords(program, tolerance=printer.process.chord_tolerance), printer) if arcs == "lines" else program
+
+
 def checked_text(program: Program, *, printer: Printer, arcs: Arcs = "native", wall: Wall | None = None) -> tuple[str, Summary]:
     """The text of a program that passes its check, the mould's `wall` too where it is given, and its summary.
 
@@ -124,10 +137,7 @@ def checked_text(program: Program, *, printer: Printer, arcs: Arcs = "native", w
     RefusedError
         It does not pass.
     """
-    if arcs == "native" and not printer.arcs:
-        raise RefusedError(f"{printer.name} draws no arcs (its profile says arcs = false); emit with --arcs lines")
-    if arcs == "lines":
-        program = on_grid_of(with_chords(program, tolerance=printer.process.chord_tolerance), printer)
+    program = drawn_with(arcs, program, printer)
     try:
         findings = check_program(program, printer, wall=wall)
     except SkinfabError as fault:

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gcode.emit import emit, with_chords
-from gcode.estimate import primed, print_time, summarise
+from gcode.estimate import primed, print_time, summarise, timing
 from gcode.geometry import Curve, Straight
 from gcode.plan import Plan
 from gcode.printer import Printer, load_printer
@@ -110,3 +110,26 @@ def test_primed_is_the_most_that_is_pushed_beyond_what_is_laid() -> None:
     pattern = (to, Prime(0.2, 1.0), Extrude(Straight((0.0, 0.0), (9.0, 0.0)), 4.0, 5.0), Retract(0.2, 1.0))
     assert primed(Program("P1", (*first, *pattern, *pattern))) == pytest.approx(50.2)
     assert primed(Program("P1", ())) == 0.0
+
+
+def test_each_step_has_its_time_and_speeds(planned: Plan, printer: Printer) -> None:
+    times = timing(planned.program, printer)
+    assert np.allclose(times.start + times.duration, [*times.start[1:], print_time(planned.program, printer)])
+    moving = np.flatnonzero(np.isfinite(times.peak))
+    assert len(moving) > 20 and (times.duration[moving] > 0).all()
+    assert (times.peak >= np.maximum(times.entry, times.leave) - 1e-9)[moving].all()
+    for k in moving:
+        start, end = times.start[k], times.start[k] + times.duration[k]
+        gone = [times.done(int(k), t) for t in np.linspace(start, end, 9)]
+        assert gone[0] == 0.0 and gone[-1] == pytest.approx(1.0) and (np.diff(gone) > 0).all()
+
+
+def test_a_move_speeds_up_and_slows_down(printer: Printer) -> None:
+    times = timing(along((0, 0), (100, 0), speed=50), printer)
+    ramp = 50 / A
+    assert (times.entry[1], times.peak[1], times.leave[1]) == (0.0, 50.0, 0.0)
+    assert times.done(1, times.start[1] + ramp) == pytest.approx(50**2 / (2 * A) / 100)
+    assert times.done(1, times.start[1] + times.duration[1] / 2) == pytest.approx(0.5)
+    assert (times.done(1, -1.0), times.done(1, 1e9)) == (0.0, 1.0)
+    waiting = timing(Program("P1", (Dwell(2.0),)), printer)
+    assert waiting.done(0, 0.5) == 0.25 and len(timing(Program("P1", ()), printer).start) == 0
