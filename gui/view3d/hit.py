@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from gui.state.selection import Target
 from gui.view3d.camera import Camera
-from gui.view3d.lines import Strokes
 from gui.view3d.painter import Painter
 from skinfab.skin import Skin
 
@@ -44,7 +43,7 @@ class Hit:
     target: Target
 
 
-def hit(skin: Skin, painter: Painter, strokes: Strokes, owner: NDArray[np.int64], column: int, row: int, *, reach: int) -> Hit | None:
+def hit(skin: Skin, painter: Painter, owner: NDArray[np.int64], column: int, row: int, *, reach: int) -> Hit | None:
     """What is at a pixel of the last picture; lines count within `reach` pixels. None beside the object.
 
     Parameters
@@ -52,8 +51,6 @@ def hit(skin: Skin, painter: Painter, strokes: Strokes, owner: NDArray[np.int64]
     skin : Skin
     painter : Painter
         That drew it.
-    strokes : Strokes
-        That it drew on it.
     owner : (m,) int64
         Position of each face's piece, -1 where it has none.
     column, row : int
@@ -68,7 +65,7 @@ def hit(skin: Skin, painter: Painter, strokes: Strokes, owner: NDArray[np.int64]
     at = np.array([column + 0.5, row + 0.5])
     weights = _weights(camera.to_screen(corners)[:, :2], at)
     piece = skin.pieces[owner[face]].id if owner[face] >= 0 else ""
-    on = strokes.targets[item] if 0 <= item < len(strokes.targets) else Target()
+    on = painter.strokes.targets[item] if item >= 0 else Target()
     target = Target(face, on.piece or piece, on.sensor, on.seam)
     vertex, edge = _nearest(skin, camera, face, at)
     return Hit(face, weights, weights @ corners, vertex, edge, target)

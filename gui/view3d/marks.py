@@ -81,6 +81,17 @@ def sensor_strokes(skin: Skin, derived: Derived, theme: Theme, lit: dict[str, st
     return Strokes.joined(parts)
 
 
+def outline(skin: Skin, id: str, colour: str, *, width: float = 1.0) -> Strokes:
+    """The border of the piece of that id, darts and holes included; nothing where there is none of that id."""
+    parts = []
+    for piece in skin.pieces:
+        if piece.id == id:
+            ends = skin.object.V[piece.vertices[piece.topology.E[piece.topology.is_boundary]]]
+            line = np.concatenate([ends, np.full((len(ends), 1, 3), np.nan)], axis=1)
+            parts.append(Strokes.polyline(line.reshape(-1, 3), rgb(colour), width))
+    return Strokes.joined(parts)
+
+
 @dataclass(frozen=True, eq=False)
 class SeamLabels:
     """Numbers of seams, the same as beside the flat pieces, at their notches.

@@ -64,7 +64,7 @@ class Painter:
         self._shaded: tuple[object, ...] = ()
         self._screen: Float32 = np.empty((0, 3), dtype=np.float32)
         self._solid: Solid | None = None
-        self._strokes = Strokes.joined([])
+        self.strokes = Strokes.joined([])
         self._resize(1, 1, 1)
 
     def draw(self, solid: Solid, camera: Camera, paint: Paint, strokes: Strokes, *, sharper: int = 1, spots: Spots | None = None) -> Bytes:
@@ -76,7 +76,7 @@ class Painter:
         if not _same((paint, spots), self._shaded):
             self._colours(solid, camera, paint, spots)
             self._shaded = (paint, spots)
-        self._strokes = strokes
+        self.strokes = strokes
         np.copyto(self._image, self._base)
         a, b = self._placed(strokes.a), self._placed(strokes.b)
         stroke(a, b, strokes.item, strokes.width, self.depth, self.slack, sharper, self._cover, self._owner)
@@ -113,7 +113,7 @@ class Painter:
         away = (rows + low_row - row) ** 2 + (columns + low_column - column) ** 2
         for k in np.argsort(away, kind="stable").tolist():
             item = int(near[rows[k], columns[k]])
-            if away[k] <= reach * reach and self._strokes.targets[item]:
+            if away[k] <= reach * reach and self.strokes.targets[item]:
                 return item
         return -1
 

@@ -14,15 +14,18 @@ from gui.state.selection import NOTHING, Target
 from gui.state.session import Session
 from gui.theme import LIGHT, Theme, rgb
 from gui.view3d.lines import Strokes
-from gui.view3d.marks import SeamLabels, SeamLines, sensor_strokes
+from gui.view3d.marks import SeamLabels, SeamLines, outline, sensor_strokes
 from gui.view3d.painter import Spots
 from gui.view3d.shade import Paint
 from skinfab.skin import Skin
 
 T = TypeVar("T")
 
-#: How much of its colour a piece takes that is selected, or under the pointer.
-_SELECT_TINT, _HOVER_TINT = 0.45, 0.22
+#: How much lighter a piece becomes that is selected, or under the pointer: light changes no hue, so that colours keep their meaning.
+_SELECT_TINT, _HOVER_TINT = 0.38, 0.20
+
+#: Widths of the outlines of those pieces, pixels at 96 dots per inch.
+_SELECT_WIDTH, _HOVER_WIDTH = 4.6, 3.0
 
 
 class Scene:
@@ -87,7 +90,7 @@ class Scene:
             "seams", (theme.name,), (skin.mesh, skin.seams, skin.marks), lambda: self._lines(skin).strokes(theme, width=self._dpi)
         )
         selected, hovered = session.selected, session.hovered
-        lit = {t.sensor: c for t, c in ((hovered, theme.hover), (selected, theme.select)) if t.sensor}
+        lit = {id: c for t, c in ((hovered, theme.hover), (selected, theme.select)) for id in (t.sensor, *t.also) if id}
         key = (round(scale, 6), theme.name, *sorted(lit.items()))
         sensors = self._once(
             "sensors",
@@ -95,8 +98,12 @@ class Scene:
             (skin.object, *skin.pieces, *skin.sensors),
             lambda: sensor_strokes(skin, self._derived, theme, lit, scale=scale, width=self._dpi),
         )
-        parts = [seams, sensors]
-        for target, colour in ((selected, theme.select), (hovered, theme.hover)):
+        parts: list[Strokes] = []  # outlines below the seams, which the pointer must find
+        for target, colour, width in ((hovered, self.theme.hover, _HOVER_WIDTH), (selected, self.theme.select, _SELECT_WIDTH)):
+            if self._whole_piece(target) and target.piece:
+                parts.append(self._outline(skin, target.piece, colour, width * self._dpi))
+        parts += [seams, sensors]
+        for target, colour in ((selected, self.theme.select), (hovered, self.theme.hover)):
             if target.seam >= 0:
                 parts.append(self._lit_seam(skin, target.seam, colour))
         if hovered.face >= 0 and not hovered.sensor and hovered.seam < 0:
@@ -125,7 +132,7 @@ class Scene:
         )
         board = session.shading == "checker"
         flat = self._once("flat", (), (skin.mesh, *skin.pieces), lambda: _flat_corners(skin)) if board else None
-        tints = np.array([[0, 0, 0, 0], [*rgb(theme.hover), _HOVER_TINT], [*rgb(theme.select), _SELECT_TINT]], dtype=np.float32)
+        tints = np.array([[0, 0, 0, 0], [255, 255, 255, _HOVER_TINT], [255, 255, 255, _SELECT_TINT]], dtype=np.float32)
         tint = np.zeros(m, dtype=np.uint8)
         for piece in skin.pieces:
             if piece.id in (selected, hovered):
@@ -138,6 +145,10 @@ class Scene:
     def _lit_seam(self, skin: Skin, edge: int, colour: str) -> Strokes:
         lines = self._lines(skin)
         return self._once(f"lit {colour}", (edge, colour), (lines,), lambda: lines.lit(skin, edge, colour, width=self._dpi))
+
+    def _outline(self, skin: Skin, piece: str, colour: str, width: float) -> Strokes:
+        of = (skin.object, *skin.pieces)
+        return self._once(f"outline {width}", (piece, colour, width), of, lambda: outline(skin, piece, colour, width=width))
 
     def _face(self, skin: Skin, face: int) -> Strokes:
         """The outline of the face under the pointer."""

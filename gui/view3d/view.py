@@ -157,8 +157,7 @@ class View3D(ttk.Frame):
         skin = self.session.skin
         if skin is None or self._solid is None or self._mesh is not skin.object or self.painter.camera is None:
             return None
-        strokes = self.scene.strokes(skin, self.painter.camera.scale)
-        return hit(skin, self.painter, strokes, self.scene.owner(skin), x, y, reach=round(_REACH * self.dpi))
+        return hit(skin, self.painter, self.scene.owner(skin), x, y, reach=round(_REACH * self.dpi))
 
     def hover_at(self, x: int, y: int) -> Target:
         """Tell the session what is at a pixel."""

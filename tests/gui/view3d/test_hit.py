@@ -25,7 +25,7 @@ def look(skin):
 
     def at(x, z, *, pixel=False, reach=4):
         column, row = (x, z) if pixel else np.floor(camera.to_screen([[x, 0, z]])[0, :2]).astype(int).tolist()
-        return hit(skin, painter, strokes, scene.owner(skin), column, row, reach=reach)
+        return hit(skin, painter, scene.owner(skin), column, row, reach=reach)
 
     return at
 

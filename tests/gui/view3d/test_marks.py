@@ -7,7 +7,7 @@ import pytest
 
 from gui.state.derived import Derived
 from gui.theme import LIGHT, rgb
-from gui.view3d.marks import SeamLabels, SeamLines, sensor_strokes
+from gui.view3d.marks import SeamLabels, SeamLines, outline, sensor_strokes
 
 
 def test_seams_locked_seams_and_forbidden_edges_differ(skin):
@@ -51,3 +51,10 @@ def test_numbers_stand_at_the_notches(skin):
 
 def test_without_pieces_there_are_no_numbers(skin):
     assert SeamLabels.of(replace(skin, pieces=(), sensors=())).text == ()
+
+
+def test_a_piece_has_its_border(skin):
+    strokes = outline(skin, "P1", LIGHT.select, width=3)
+    assert np.linalg.norm(strokes.a - strokes.b, axis=1).sum() == pytest.approx(4 * 60)
+    assert strokes.a[:, 0].max() == 60 and not any(strokes.targets)  # the pointer goes through it to the seam
+    assert len(outline(skin, "P9", LIGHT.select).a) == 0

@@ -30,6 +30,7 @@ def test_the_piece_under_the_pointer_and_the_selected_one_are_tinted(skin, sessi
     session.select(Target(piece="P2"))
     tint = scene.paint(skin).tint
     assert (tint[skin.pieces[0].faces] == 1).all() and (tint[skin.pieces[1].faces] == 2).all()
+    assert {rgb(LIGHT.select), rgb(LIGHT.hover)} <= {tuple(c) for c in scene.strokes(skin, 5.0).colour.tolist()}
     session.select(Target(piece="P2", sensor="C1"))  # the sensor is meant, not all of its piece
     assert (scene.paint(skin).tint[skin.pieces[1].faces] == 0).all()
 
@@ -69,6 +70,15 @@ def test_a_sensor_and_a_seam_light_up(skin, session, scene):
     np.testing.assert_allclose(strokes.a[-3:], skin.mesh.V[skin.mesh.F[7]])
     session.hover(Target(face=10**6))  # of a larger mesh that was open before
     scene.strokes(skin, 5.0)
+
+
+def test_sensors_selected_together_light_up_together(skin, session, scene):
+    other = replace(skin.sensors[0], id="C2", x=20.0)
+    session.do("copy", replace(skin, sensors=(*skin.sensors, other)))
+    session.select(Target(sensor="C1", piece="P2", also=("C2", "gone")))
+    strokes = scene.strokes(session.skin, 5.0)
+    shown = {t.sensor: tuple(c) for t, c in zip(strokes.targets, strokes.colour.tolist(), strict=True) if t.sensor}
+    assert shown == {"C1": rgb(LIGHT.select), "C2": rgb(LIGHT.select)}
 
 
 def test_lines_are_dark_on_the_bar_of_colours(skin, session, scene):
