@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tkinter as tk
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from tkinter import ttk
 
@@ -109,7 +109,7 @@ class Actions:
         action.run()
         return True
 
-    def menu_bar(self, submenus: dict[str, Callable[[tk.Menu], None]]) -> tk.Menu:
+    def menu_bar(self, submenus: Mapping[str, Callable[[tk.Menu], None]]) -> tk.Menu:
         """A menu bar; `submenus` ("File/Open recent") are filled by their callables whenever they are opened."""
         bar = tk.Menu(self._root, tearoff=False, name="menu")
         for name in dict.fromkeys(a.menu for a in self.all if a.menu):
@@ -166,7 +166,7 @@ class Actions:
         """Every key and what it does, for the help."""
         return ((key_words(a.key), a.label.removesuffix(" …")) for a in self.all if a.key)
 
-    def _insert_submenu(self, menu: tk.Menu, place: str, submenus: dict[str, Callable[[tk.Menu], None]]) -> None:
+    def _insert_submenu(self, menu: tk.Menu, place: str, submenus: Mapping[str, Callable[[tk.Menu], None]]) -> None:
         """A submenu named "Open recent" stands behind the action whose place it gives: "File/open/Open recent"."""
         for name, fill in submenus.items():
             where, _, label = name.rpartition("/")

@@ -132,6 +132,7 @@ class App:
         root, session = self.root, self.session
         self.status = StatusBar(root, session, cancel=self.runner.cancel, describe=lambda: describe(session, self.derived))
         self.status.pack(side="bottom", fill="x")
+        self.seams = SeamCommands(self.desk)
         body = ttk.Panedwindow(root, orient="vertical", name="body")
         middle = ttk.Panedwindow(body, orient="horizontal", name="middle")
         self.view3d = View3D(middle, session, self.derived, self.theme, name="view3d")
@@ -147,7 +148,8 @@ class App:
         body.add(self.problems, weight=0)
         self._connect(remembered)
         self.actions.tool_bar(root, self.status.tip).pack(side="top", fill="x", before=self.status)
-        root.configure(menu=self.actions.menu_bar({"File/open/Open recent": self.files.fill_recent}))
+        submenus = {"File/open/Open recent": self.files.fill_recent, "Seams/flatten/Flatten by": self.seams.fill_methods}
+        root.configure(menu=self.actions.menu_bar(submenus))
         apply(root, self.theme)  # menus too
         body.pack(side="top", fill="both", expand=True)
 
@@ -158,7 +160,9 @@ class App:
         PiecesPanel(side, session, self.derived).pack(fill="x")
         SensorsPanel(side, session, self.shelf).pack(fill="both", expand=True)
         forms = ttk.Notebook(side, name="forms")
-        properties = PropertiesPanel(forms, session, self.derived, self.shelf, self.background, complain=complain)
+        properties = PropertiesPanel(
+            forms, session, self.derived, self.shelf, self.background, complain=complain, make_thick=self.seams.make_thick
+        )
         self.new_sensor = NewSensorPanel(forms, session, self.shelf, self.theme, complain=complain, place=lambda: session.take_up("add"))
         forms.add(properties, text="Properties")
         forms.add(self.new_sensor, text="New sensor")
@@ -179,7 +183,7 @@ class App:
             Action("quit", "Close", "File", self.close, "Control-q"),
             *EditCommands(desk).actions(),
             *ArrangeCommands(desk).actions(),
-            *SeamCommands(desk).actions(),
+            *self.seams.actions(),
             *SensorCommands(desk).actions(),
             *self.toolbox.actions(),
             *views.actions(),

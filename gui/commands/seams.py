@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import tkinter as tk
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +16,7 @@ from gui.jobs import tasks
 from gui.state.adopt import adopt
 from gui.state.problem import Problem
 from gui.state.selection import Target
+from skinfab.flatten.methods import METHODS
 from skinfab.seams.partial import Reopened
 from skinfab.skin import Skin
 
@@ -31,7 +34,7 @@ class SeamCommands:
 
     def __init__(self, desk: Desk) -> None:
         self._desk = desk
-        self._settled: list[NDArray[np.int64]] = []
+        self._settled: list[tuple[NDArray[np.int64], list[Problem]]] = []
         self.method = "auto"
         desk.session.listen("skin", self._follow)
 
@@ -41,6 +44,8 @@ class SeamCommands:
         return [
             Action("auto_cut", "Cut automatically", "Seams", self.auto_cut, "F5", has, "Few good pieces; locked seams stay.", True),
             Action("flatten", "Flatten all pieces anew", "Seams", self.flatten_anew, "F6", self._desk.has_pieces),
+            Action("clear_seams", "Glue all seams that are not locked", "Seams", self.clear, "", has),
+            Action("clear_marks", "Forget locks, bans and paint", "Seams", self.clear_marks, "", self._has_marks),
         ]
 
     def auto_cut(self) -> None:
@@ -62,6 +67,42 @@ class SeamCommands:
             anew=ids,
         )
 
+    def clear(self) -> None:
+        """One surface again, but for what is locked."""
+        skin = self._desk.skin
+        locked = skin.marks.locked if skin.marks is not None else np.zeros((0, 2), dtype=np.int64)
+        self._desk.session.do("glue all", replace(skin, seams=locked))
+
+    def clear_marks(self) -> None:
+        """Seams stay; what was said about where they may run goes."""
+        self._desk.session.do("forget marks", replace(self._desk.skin, marks=None))
+
+    def make_thick(self, thickness: float) -> None:
+        """Flatten for a skin of that thickness, mm; 0 for the object's own surface."""
+        asked = self._desk.skin
+        if thickness == asked.thickness:
+            return
+
+        def take(result: Reopened) -> None:
+            session = self._desk.session
+            if session.skin is not asked:
+                self._desk.complain("flatten", "the skin changed while it was flattened for another thickness; set it again")
+                return
+            self._settle(result.skin, result)
+            session.do(f"skin {thickness:g} mm thick", result.skin)
+
+        label = f"flattening for {thickness:g} mm"
+        self._desk.work(label, tasks.make_thick, take, source="flatten", skin=asked, thickness=thickness, method=self.method)
+
+    def _has_marks(self) -> bool:
+        return self._desk.session.skin is not None and self._desk.skin.marks is not None
+
+    def fill_methods(self, menu: tk.Menu) -> None:
+        """One entry a method of flattening; the one in use is ticked."""
+        chosen = tk.StringVar(menu, value=self.method)
+        for name in ("auto", "bff-cones", *METHODS):
+            menu.add_radiobutton(label=name, value=name, variable=chosen, command=partial(self.choose_method, name))
+
     def choose_method(self, method: str) -> None:
         """Flatten by another method from now on, and all pieces at once."""
         self.method = method
@@ -71,8 +112,12 @@ class SeamCommands:
     def _follow(self) -> None:
         """Open the object along its seams as they are now, unless the pieces are those already."""
         skin = self._desk.session.skin
-        if skin is None or any(skin.seams is seams for seams in self._settled):
+        if skin is None:
             return
+        for seams, said in self._settled:
+            if skin.seams is seams:
+                self._desk.session.report("flatten", said)  # after undo, what was said then
+                return
         self._desk.work("flattening", tasks.reopen, self._take(skin, ""), source="flatten", skin=skin, method=self.method, anew=[])
 
     def _take(self, asked: Skin, label: str) -> Callable[[Reopened], None]:
@@ -90,12 +135,17 @@ class SeamCommands:
                 else:
                     self._follow()
                 return
-            self._settled.append(skin.seams)
-            del self._settled[:-_MOST_SETTLED]
+            self._settle(skin, result)
             if label:
                 session.do(label, skin)
             elif skin.pieces != asked.pieces or skin.seams is not asked.seams:
                 session.amend(skin)
-            session.report("flatten", [Problem(f.text, "flatten", kind="warning", target=Target(piece=f.piece)) for f in result.faults])
 
         return take
+
+    def _settle(self, skin: Skin, result: Reopened) -> None:
+        """The pieces of `skin` are those of its seams, and this is what there is to say of them."""
+        said = [Problem(f.text, "flatten", kind="warning", target=Target(piece=f.piece)) for f in result.faults]
+        self._settled.append((skin.seams, said))
+        del self._settled[:-_MOST_SETTLED]
+        self._desk.session.report("flatten", said)

@@ -8,21 +8,18 @@ from pathlib import Path
 
 import numpy as np
 
-from gcode.check_wall import nozzle_margin
-from gcode.printer import load_printer
-from skinfab.cli import steps
+from gcode.used import limits_of, used_by, with_room_for_nozzle
 from skinfab.document import load_skin
 from skinfab.material import load_material
 from skinfab.mesh.door import load_usable
 from skinfab.mesh.inspect import inspect
 from skinfab.mesh.io import load_mesh
 from skinfab.mesh.repair import clean, repair
+from skinfab.mesh.surface import surface
 from skinfab.mesh.units import guess_units
-from skinfab.placement.auto import place
-from skinfab.placement.check import validate
-from skinfab.progress import Progress
+from skinfab.placement.place import place_sensors
+from skinfab.progress import Progress, part_of
 from skinfab.seams import partial
-from skinfab.seams.judge import Limits
 from skinfab.seams.partial import Reopened
 from skinfab.skin import Skin, Source
 
@@ -117,11 +114,6 @@ def open_skin(*, path: Path, progress: Progress) -> Opened:
     return Opened(load_skin(path), ())
 
 
-def limits_of(skin: Skin) -> Limits:
-    """What the document's pieces must keep to: its bound, and the bed of its printer."""
-    return steps.limits(skin.max_distortion, steps.profiles(skin.printer, skin.material))
-
-
 def auto_cut(*, skin: Skin, progress: Progress) -> Reopened:
     """Automatic seams; locked ones stay."""
     material = load_material(skin.material)
@@ -136,8 +128,20 @@ def reopen(*, skin: Skin, method: str, anew: Collection[str], progress: Progress
 def place_automatically(*, skin: Skin, progress: Progress) -> tuple[Skin, tuple[str, ...]]:
     """Sensors in place of those there are, and what there is to say."""
     progress(0.1, "placing sensors")
-    printer, material = load_printer(skin.printer), load_material(skin.material)
-    roomy = replace(material, margin=max(material.margin, nozzle_margin(printer, material)))
-    sensors, warnings = place(skin.object, skin.pieces, material=roomy, seed=skin.seed)
-    validate(replace(skin, sensors=tuple(sensors)), roomy)
-    return replace(skin, sensors=tuple(sensors)), tuple(warnings)
+    used = used_by(skin)
+    roomy, wider = with_room_for_nozzle(used.material, used.printer)
+    sensors, warnings = place_sensors(skin, roomy)
+    return replace(skin, sensors=sensors), (*wider, *warnings)
+
+
+def make_thick(*, skin: Skin, thickness: float, method: str, progress: Progress) -> Reopened:
+    """The same seams for a skin of another thickness: the surface on which it keeps its lengths lies elsewhere."""
+    progress(0.1, "moving the surface")
+    flattened = surface(skin.object, thickness=thickness, neutral=skin.neutral)
+    moved = replace(
+        skin, mesh=flattened.mesh, thickness=flattened.thickness, object_V=None if flattened.mesh is skin.object else skin.object.V
+    )
+    ids = [piece.id for piece in skin.pieces]
+    return partial.reopen(
+        moved, limits_of(skin), method=method, anew=ids, material=load_material(skin.material), progress=part_of(progress, 0.3, 1.0)
+    )

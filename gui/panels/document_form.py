@@ -21,9 +21,11 @@ _OWN = "a file of your own …"
 class DocumentForm(ttk.Frame):
     """What is selected when nothing is."""
 
-    def __init__(self, master: tk.Misc, session: Session, *, complain: Callable[[str], None]) -> None:
+    def __init__(
+        self, master: tk.Misc, session: Session, *, complain: Callable[[str], None], make_thick: Callable[[float], object]
+    ) -> None:
         super().__init__(master, name="document")
-        self._session, self._complain = session, complain
+        self._session, self._complain, self._make_thick = session, complain, make_thick
         self.columnconfigure(1, weight=1)
         self.printer = self._choice(0, "printer", bundled("gcode", "profiles"), load_printer)
         self.material = self._choice(1, "material", bundled("skinfab", "materials"), load_material)
@@ -36,9 +38,19 @@ class DocumentForm(ttk.Frame):
             tip="Pieces are cut until each piece's mean distortion is at most this; 4 is perfect, 4.05 the default.",
         )
         self.bound.grid(row=2, column=0, columnspan=2, sticky="ew", pady=2)
+        self.thickness = Field(
+            self,
+            "skin thickness",
+            unit="mm",
+            name="thickness",
+            take=self._set_thickness,
+            complain=complain,
+            tip="The skin closes without stretching where the surface in its middle is flattened; 0 flattens the object's own.",
+        )
+        self.thickness.grid(row=3, column=0, columnspan=2, sticky="ew", pady=2)
         self.text = tk.StringVar(self)
         ttk.Label(self, textvariable=self.text, style="Faint.TLabel", wraplength=290, justify="left").grid(
-            row=3, column=0, columnspan=2, sticky="w"
+            row=4, column=0, columnspan=2, sticky="w"
         )
 
     def refresh(self) -> None:
@@ -49,10 +61,10 @@ class DocumentForm(ttk.Frame):
         self.printer.set(skin.printer)
         self.material.set(skin.material)
         self.bound.show(f"{skin.max_distortion:g}")
+        self.thickness.show(f"{skin.thickness:g}")
         low, high = skin.object.bbox
         size = " x ".join(f"{x:.1f}" for x in high - low)
-        thick = f"; flattened for a skin {skin.thickness:g} mm thick" if skin.thickness else ""
-        self.text.set(f"{size} mm, {len(skin.mesh.F)} triangles, read in {skin.source.units} x {skin.source.scale:g}{thick}")
+        self.text.set(f"{size} mm, {len(skin.mesh.F)} triangles, read in {skin.source.units} x {skin.source.scale:g}")
 
     def _choice(self, row: int, what: str, names: list[str], load: Callable[[str], object]) -> tk.StringVar:
         value = tk.StringVar(self)
@@ -78,6 +90,12 @@ class DocumentForm(ttk.Frame):
         if name != getattr(skin, what):
             self._session.do(f"other {what}", replace(skin, printer=name) if what == "printer" else replace(skin, material=name))
         self.refresh()
+
+    def _set_thickness(self, text: str) -> None:
+        value = number(text, "the thickness")
+        if value < 0:
+            raise InputError(f"the thickness is {value:g} mm; it must be 0 or more")
+        self._make_thick(value)
 
     def _set_bound(self, text: str) -> None:
         skin, value = self._session.skin, number(text, "the bound")

@@ -28,6 +28,8 @@ class PropertiesPanel(ttk.Frame):
         For the strain of wearing.
     complain : callable
         Shows a sentence about what was typed, or a hint.
+    make_thick : callable
+        Flattens for a skin of so many mm.
     """
 
     def __init__(
@@ -39,6 +41,7 @@ class PropertiesPanel(ttk.Frame):
         background: Background,
         *,
         complain: Callable[[str], None],
+        make_thick: Callable[[float], object],
     ) -> None:
         super().__init__(master, name="properties", padding=4)
         self._session = session
@@ -47,7 +50,7 @@ class PropertiesPanel(ttk.Frame):
         self._forms: dict[str, SensorForm | PieceFacts | DocumentForm] = {
             "sensor": SensorForm(self, session, shelf, background, complain=complain),
             "piece": PieceFacts(self, session, derived),
-            "document": DocumentForm(self, session, complain=complain),
+            "document": DocumentForm(self, session, complain=complain, make_thick=make_thick),
         }
         self._shown = ""
         session.listen("skin", self._refresh)

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
-from gcode.check_wall import nozzle_margin
 from gcode.printer import Printer, load_printer
+from gcode.used import with_room_for_nozzle
 from skinfab.material import Material, load_material
 from skinfab.skin import Skin
 
@@ -56,6 +56,5 @@ class ProfileShelf:
         key = printer, material
         if key not in self._kept:
             head, stuff = load_printer(printer), load_material(material)
-            roomy = replace(stuff, margin=max(stuff.margin, nozzle_margin(head, stuff)))
-            self._kept[key] = Profiles(head, stuff, roomy)
+            self._kept[key] = Profiles(head, stuff, with_room_for_nozzle(stuff, head)[0])
         return self._kept[key]

@@ -15,7 +15,9 @@ from gui.state.selection import NOTHING, Target
 @pytest.fixture
 def panel(root, session):
     background, said = Background(root), []
-    made = PropertiesPanel(root, session, Derived(), ProfileShelf(), background, complain=said.append)
+    thick = []
+    made = PropertiesPanel(root, session, Derived(), ProfileShelf(), background, complain=said.append, make_thick=thick.append)
+    made.thick = thick
     made.pack()
     made.said = said
     root.update()
@@ -98,6 +100,10 @@ def test_a_piece_and_the_document_in_numbers(root, session, panel):
     assert panel.title.get() == "plate.obj"
     type_into(root, panel, "document.bound", "4.2")
     assert session.skin.max_distortion == 4.2
+    type_into(root, panel, "document.thickness", "2.5")
+    assert panel.thick == [2.5]
+    type_into(root, panel, "document.thickness", "-1")
+    assert "0 or more" in panel.said[-1] and panel.thick == [2.5]
     type_into(root, panel, "document.bound", "4")
     assert "above 4" in panel.said[-1] and session.skin.max_distortion == 4.2
 
