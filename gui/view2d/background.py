@@ -18,6 +18,8 @@ Float = NDArray[np.float64]
 
 #: Pixels of an ordinary screen.
 RULER_PX = 24
+#: What the colour bar takes at the right.
+BAR_PX = 64
 _NOTCH_PX = 6.0
 _LABEL_PX = 11.0
 #: A seam shorter than this on the screen has no label: it would hide what it names.

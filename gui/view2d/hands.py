@@ -263,7 +263,7 @@ class Hands:
         if self._resting is not None:
             self._view.after_cancel(self._resting)
             self._resting = None
-        self.sensors, self.findings, self.guides, self.rectangle = (), {}, _NOWHERE, None
+        self.sensors, self.findings, self.guides, self.rectangle, self._hit_words = (), {}, _NOWHERE, None, ""
         self._pressed, self._grabbed, self._panned, self._tool_has_it = None, None, None, False
 
     def _stop(self, _: tk.Event) -> None:

@@ -57,6 +57,8 @@ class Marker:
     sheet : Sheet
     theme : Theme
     lines : Lines
+    cased : bool
+        Conductors have a seam of the view's own colour: they would not stand out from the faces.
     """
 
     pen: Pen
@@ -64,6 +66,7 @@ class Marker:
     sheet: Sheet
     theme: Theme
     lines: Lines
+    cased: bool = False
 
     def sensors(self, sensors: Iterable[Sensor], findings: Findings, *, also_wrong: Iterable[str] = ()) -> None:
         """Conductors as wide as their beads, in the colour of whether they fit, with their names."""
@@ -72,6 +75,8 @@ class Marker:
             px = self.plane.to_px(self.lines.of(sensor, self.sheet))
             width = max(sensor.pattern.bead * self.plane.scale / self.pen.ratio, _LEAST_BEAD_PX)
             colour = self.theme.error if sensor.id in wrong else self.theme.ink
+            if self.cased:
+                self.pen.line(px, self.theme.view, width + 2.5)
             self.pen.line(px, colour, width)
             if np.ptp(px, axis=0).max() >= _LEAST_NAMED_PX * self.pen.ratio:
                 middle = self.plane.to_px(self.lines.middle(sensor, self.sheet))

@@ -14,7 +14,7 @@ from gui.shades import face_colours
 from gui.state.derived import Derived
 from gui.state.session import Session
 from gui.theme import Theme
-from gui.view2d.background import RULER_PX, Ground, paint_faces, paint_frame, paint_lines, paint_names
+from gui.view2d.background import BAR_PX, RULER_PX, Ground, paint_faces, paint_frame, paint_lines, paint_names
 from gui.view2d.fill import fill
 from gui.view2d.hands import Hands
 from gui.view2d.hit import REACH_PX, Hit2D, hit
@@ -214,7 +214,8 @@ class View2D(ttk.Frame):
             return
         if self._fitted:
             ruler = RULER_PX * pen.ratio
-            plane = Plane.fitted(*sheet.box, pen.width - ruler, pen.height - ruler, border=_BORDER_PX * pen.ratio)
+            bar = BAR_PX * pen.ratio if self.session.shading == "distortion" else 0.0
+            plane = Plane.fitted(*sheet.box, pen.width - ruler - bar, pen.height - ruler, border=_BORDER_PX * pen.ratio)
             self.plane = plane.moved(ruler, ruler)
         self._find_triangles(sheet, pen.width, pen.height)
         self._drawn_zero = self._zero()
@@ -253,7 +254,9 @@ class View2D(ttk.Frame):
         marker.place(hands.place())
 
     def _marker(self, pen: Pen, sheet: Sheet) -> Marker:
-        return Marker(pen, self.plane, sheet, self.theme, self.lines)
+        # The scale of distortions begins with near white, whatever the theme: light lines need an edge there.
+        cased = self.theme.name == "dark" and self.session.shading == "distortion"
+        return Marker(pen, self.plane, sheet, self.theme, self.lines, cased)
 
     def _find_triangles(self, sheet: Sheet, width: int, height: int) -> None:
         """Which triangle each pixel shows, anew only where something moved."""
