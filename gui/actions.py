@@ -10,6 +10,9 @@ from tkinter import ttk
 #: Words of a key as Tk writes them, and as people read them.
 _KEY_WORDS = (("Control-", "Ctrl+"), ("Shift-", "Shift+"), ("Alt-", "Alt+"), ("Key-", ""), ("Return", "Enter"))
 
+#: Classes of widgets that do something of their own when Space is pressed.
+_PRESSED_BY_SPACE = ("TButton", "TCheckbutton", "TRadiobutton", "Treeview", "Button", "Checkbutton", "Radiobutton", "Listbox")
+
 
 def always() -> bool:
     """Can be done at any time."""
@@ -95,8 +98,10 @@ class Actions:
         for action in self.all:
             if action.key:
                 root.bind(f"<{action.key}>", self._on_key(action))
-                if action.key.startswith("Control-") and action.key[-2] == "-":  # with Caps Lock Tk calls the key by its capital
-                    root.bind(f"<{action.key[:-1]}{action.key[-1].upper()}>", self._on_key(action))
+                # With Caps Lock Tk calls a letter by its other case.
+                before, letter = action.key[:-1], action.key[-1]
+                if letter.isalpha() and before in ("", "Control-", "Control-Shift-"):
+                    root.bind(f"<{before}{letter.swapcase()}>", self._on_key(action))
 
     def __getitem__(self, id: str) -> Action:
         return next(a for a in self.all if a.id == id)
@@ -180,6 +185,9 @@ class Actions:
         def pressed(event: tk.Event) -> str | None:
             # A letter typed into a field is meant for the field.
             if isinstance(event.widget, (tk.Entry, ttk.Entry, tk.Text)) and not action.key.startswith(("Control-", "F", "Alt-")):
+                return None
+            # Space presses the button that has the focus, and nothing else.
+            if action.key == "Key-space" and event.widget.winfo_class() in _PRESSED_BY_SPACE:
                 return None
             if not action.enabled():
                 return None

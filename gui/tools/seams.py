@@ -35,8 +35,15 @@ class _Way(Tool):
         """What undo calls it."""
         raise NotImplementedError
 
+    @property
+    def begun(self) -> bool:
+        return self._last >= 0
+
     def click(self, hit: AnyHit, *, shift: bool) -> None:
         skin = self._desk.skin
+        if hit.vertex < 0:  # beside a piece of the flat skin, on its rim
+            self._desk.say("There is no point of the object there; click on it, or on a piece.")
+            return
         if self._last < 0:
             self._last = hit.vertex
             self._show(skin.object.V[[hit.vertex]])
@@ -105,7 +112,7 @@ class Forbid(_Way):
         self._desk.session.report("seams", [])
 
     def _allow(self, skin: Skin, edge: int) -> None:
-        if skin.marks is None or not edge_mask(skin.mesh, skin.marks.forbidden)[edge]:
+        if edge < 0 or skin.marks is None or not edge_mask(skin.mesh, skin.marks.forbidden)[edge]:
             self._desk.say("Nothing is forbidden there.")
             return
         self._desk.session.do("allow seams", edit.allow(skin, edit.chain(skin.mesh, skin.marks.forbidden, edge)))

@@ -32,6 +32,11 @@ class Tool:
     key = ""
     tip = ""
 
+    @property
+    def begun(self) -> bool:
+        """Whether something was begun that further clicks would go on with."""
+        return False
+
     def click(self, hit: AnyHit, *, shift: bool) -> None:
         """The object was clicked."""
 

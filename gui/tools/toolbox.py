@@ -17,6 +17,7 @@ from gui.tools.seams import Cut, Forbid, Glue, Lock
 from gui.tools.tool import AnyHit, Tool
 from gui.view2d.view import View2D
 from gui.view3d.view import View3D
+from skinfab.mesh.model import Mesh
 from skinfab.patterns.base import Pattern
 
 
@@ -72,12 +73,13 @@ class Toolbox:
             *more,
         ]
         self.tools = {tool.id: tool for tool in all_tools}
-        self._dragging = False
+        self._mesh: Mesh | None = None
         self._held: Tool = self.tools["select"]
         for view in (view3d, view2d):
             view.on_click, view.on_drag, view.on_release = self._click, self._drag, self._release
             view.on_point = self._point
         desk.session.listen("tool", self._changed)
+        desk.session.listen("skin", self._other_object)
 
     def actions(self) -> list[Action]:
         """For the table."""
@@ -105,7 +107,7 @@ class Toolbox:
 
     def stop(self) -> None:
         """Drop what was begun; where nothing was, the tool; where none was held, the selection."""
-        begun = getattr(self._held, "begun", False)
+        begun = self._held.begun
         self._held.stop()
         if begun:
             return
@@ -118,6 +120,13 @@ class Toolbox:
         self._held.stop()
         self._held = self.tools[self._desk.session.tool]
         self._desk.say(self._held.tip)
+
+    def _other_object(self) -> None:
+        """What was begun on one object cannot be gone on with on another."""
+        mesh = None if self._desk.session.skin is None else self._desk.session.skin.mesh
+        if mesh is not self._mesh:
+            self._mesh = mesh
+            self._held.stop()
 
     def _click(self, hit: AnyHit | None, shift: bool) -> None:
         if hit is None or (hit.face < 0 and self._held.id != "select" and not hit.target):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import shutil
 import subprocess
@@ -59,6 +60,8 @@ def root(display: str) -> Iterator[object]:
     window.report_callback_exception = lambda kind, fault, trace: faults.append(fault)
     yield window
     window.destroy()
+    # What a window leaves in cycles of its own must not be found by a thread of the next test: Tk would not answer it.
+    gc.collect()
     if faults:
         raise faults[0]
 
@@ -85,3 +88,44 @@ def session(skin: Skin) -> Session:
     made = Session()
     made.open(skin, None)
     return made
+
+
+@pytest.fixture(scope="module")
+def one_window(display: str, tmp_path_factory: pytest.TempPathFactory) -> Iterator[object]:
+    """One real window for all tests of a file, with its worker process, and with someone who answers its questions."""
+    import tkinter as tk
+
+    from person import Answers, Person
+
+    from gui.app import App
+
+    state = tmp_path_factory.mktemp("state")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("SKINFAB_STATE", str(state))
+        answers = Answers()
+        app = App(tk.Tk(), dialogs=answers)
+    app.root.geometry("1280x760+0+0")
+    app.root.update()
+    person = Person(app, answers)
+    person.wait(lambda: app.view2d.winfo_width() > 1)
+    yield person
+    answers.give["Unsaved work"] = "Do not save"
+    app.close()
+    gc.collect()
+
+
+@pytest.fixture
+def person(one_window) -> Iterator[object]:
+    """That window with nothing wrong, nothing answered and the first tool in hand; a fault of its own fails the test."""
+    app, answers = one_window.app, one_window.answers
+    fresh = type(answers)()
+    answers.asked, answers.give, answers.path, answers.choice = fresh.asked, {"Unsaved work": "Do not save"}, None, fresh.choice
+    app.runner.cancel()
+    app.session.take_up("select")
+    app.session.shade("pieces")
+    for source in {p.source for p in app.session.problems}:
+        app.session.report(source, [])
+    log = app.desk.state / "gui.log"
+    log.unlink(missing_ok=True)
+    yield one_window
+    assert not log.exists(), log.read_text(encoding="utf-8")

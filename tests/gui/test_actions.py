@@ -92,3 +92,13 @@ def test_two_actions_cannot_share_a_key(root):
 def test_the_help_lists_every_key(root, table):
     actions, _, _ = table
     assert list(actions.keys()) == [("Ctrl+O", "Open"), ("Ctrl+S", "Save"), ("Ctrl+Z", "Undo"), ("C", "Cut")]
+
+
+def test_caps_lock_changes_no_key(root, table):
+    _, done, _ = table
+    for key in ("Control-O", "Control-Z", "C"):
+        press(root, key)
+    assert done == ["open", "undo", "cut"]
+    actions = Actions(root, [Action("as", "Save as …", "File", lambda: done.append("as"), "Control-Shift-S")])
+    press(root, "Control-Shift-s")
+    assert done[-1] == "as" and actions["as"].key == "Control-Shift-S"
