@@ -1,4 +1,4 @@
-"""Undo, redo, and what is done to the selected sensor."""
+"""Undo, redo, and what is done to the selected sensors."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ class EditCommands:
                 "undo", "Undo", "Edit", self.undo, "Control-z", lambda: session.undo_label is not None, "Take the last step back.", True
             ),
             Action("redo", "Redo", "Edit", self.redo, "Control-y", lambda: session.redo_label is not None, "Do it again after all.", True),
-            Action("delete", "Delete the sensor", "Edit", self.delete, "Delete", self._one_selected),
-            Action("turn_left", "Turn by 15°", "Edit", lambda: self.turn(15), "Control-r", self._one_selected),
-            Action("turn_right", "Turn back by 15°", "Edit", lambda: self.turn(-15), "Control-Shift-R", self._one_selected),
+            Action("delete", "Delete the selected sensors", "Edit", self.delete, "Delete", self._any_selected),
+            Action("turn_left", "Turn by 15°", "Edit", lambda: self.turn(15), "Control-r", self._any_selected),
+            Action("turn_right", "Turn back by 15°", "Edit", lambda: self.turn(-15), "Control-Shift-R", self._any_selected),
             Action("select_none", "Select nothing", "Edit", lambda: session.select(NOTHING), "Control-Shift-A"),
         ]
 
@@ -44,15 +44,29 @@ class EditCommands:
             self._desk.say(f"Done again: {label}.")
 
     def delete(self) -> None:
-        """Take the selected sensor off."""
-        skin, id = self._desk.skin, self._desk.session.selected.sensor
-        self._desk.session.do(f"delete {id}", replace(skin, sensors=edit.remove(skin.sensors, id)))
+        """Take the selected sensors off."""
+        skin, chosen = self._desk.skin, self._chosen()
+        sensors = skin.sensors
+        for id in chosen:
+            sensors = edit.remove(sensors, id)
+        self._desk.session.do(f"delete {_named(chosen)}", replace(skin, sensors=sensors))
 
     def turn(self, degrees: float) -> None:
-        """Turn the selected sensor about its middle."""
-        skin, id = self._desk.skin, self._desk.session.selected.sensor
-        sensors = edit.rotate(skin.sensors, id, angle=math.radians(degrees))
-        self._desk.session.do(f"turn {id}", replace(skin, sensors=sensors))
+        """Turn each selected sensor about its middle."""
+        skin, chosen = self._desk.skin, self._chosen()
+        sensors = skin.sensors
+        for id in chosen:
+            sensors = edit.rotate(sensors, id, angle=math.radians(degrees))
+        self._desk.session.do(f"turn {_named(chosen)}", replace(skin, sensors=sensors))
 
-    def _one_selected(self) -> bool:
-        return self._desk.session.skin is not None and bool(self._desk.session.selected.sensor)
+    def _chosen(self) -> list[str]:
+        """The selected sensors that are still there."""
+        selected, there = self._desk.session.selected, {s.id for s in self._desk.skin.sensors}
+        return [id for id in (selected.sensor, *selected.also) if id in there]
+
+    def _any_selected(self) -> bool:
+        return self._desk.session.skin is not None and bool(self._chosen())
+
+
+def _named(ids: list[str]) -> str:
+    return ids[0] if len(ids) == 1 else f"{len(ids)} sensors"

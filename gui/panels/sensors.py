@@ -11,7 +11,7 @@ from gui.state.session import Session
 from skinfab.electrical import resistance
 from skinfab.errors import InputError
 
-_COLUMNS = (("id", "sensor", 58), ("kind", "pattern", 96), ("piece", "on", 36), ("channel", "ch", 32), ("r", "R, kohm", 76))
+_COLUMNS = (("id", "id", 46), ("kind", "pattern", 92), ("piece", "on", 36), ("channel", "ch", 30), ("r", "R, kohm", 96))
 
 
 class SensorsPanel(ttk.Frame):

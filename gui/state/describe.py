@@ -19,7 +19,9 @@ def describe(session: Session, derived: Derived) -> str:
         return "Open a mesh or a skin to begin (Ctrl+O)."
     if not at:
         seams = "no seams yet: cut by clicks (C) or automatically (F5)"
-        return f"{skin.source.file}: " + (f"{len(skin.pieces)} pieces, {len(skin.sensors)} sensors" if skin.pieces else seams)
+        return f"{skin.source.file}: " + (
+            f"{_counted(len(skin.pieces), 'piece')}, {_counted(len(skin.sensors), 'sensor')}" if skin.pieces else seams
+        )
     parts = []
     if at.sensor:
         sensor = next((s for s in skin.sensors if s.id == at.sensor), None)
@@ -35,6 +37,10 @@ def describe(session: Session, derived: Derived) -> str:
     if at.face >= 0:
         parts.append(f"face {at.face}" + ("" if at.piece else ", not flat yet"))
     return "   ".join(parts)
+
+
+def _counted(number: int, what: str) -> str:
+    return f"{number} {what}{'' if number == 1 else 's'}"
 
 
 def _has(pairs: object, pair: object) -> bool:

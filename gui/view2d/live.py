@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from gcode.used import used_by, with_room_for_nozzle
 from gui.state.problem import Problem
 from gui.state.selection import Target
 from skinfab.errors import SkinfabError
-from skinfab.material import Material, load_material
 from skinfab.placement.check import Checker, Finding
 from skinfab.placement.sensor import Sensor
 from skinfab.skin import Skin
@@ -26,14 +26,14 @@ class Live:
 
     def __init__(self) -> None:
         self.findings: Findings = {}
-        self._name: str | None = None
+        self._names: tuple[str, str] | None = None
         self._checker: Checker | None = None
         self._fault = ""
         self._seen: tuple[object, ...] = ()
 
     def look(self, skin: Skin) -> bool:
         """Check all sensors of a document; whether there was anything new to check."""
-        now = (skin.pieces, skin.sensors, skin.material)
+        now = (skin.pieces, skin.sensors, skin.material, skin.printer)
         if len(now) == len(self._seen) and all(a is b for a, b in zip(now, self._seen, strict=True)):
             return False
         self._seen = now
@@ -42,7 +42,7 @@ class Live:
 
     def check(self, skin: Skin, sensors: Iterable[Sensor], others: Iterable[Sensor]) -> Findings:
         """What is wrong with some sensors beside others."""
-        checker = self._for(skin.material)
+        checker = self._for(skin)
         if checker is None:
             return {}
         pieces, others, found = {p.id: p for p in skin.pieces}, tuple(others), {}
@@ -57,7 +57,7 @@ class Live:
 
     def prepare(self, skin: Skin, piece: str) -> None:
         """Before a drag: what its first move would otherwise wait for."""
-        checker = self._for(skin.material)
+        checker = self._for(skin)
         if checker is not None and any(p.id == piece for p in skin.pieces):
             checker.prepare(skin.piece(piece))
 
@@ -76,11 +76,14 @@ class Live:
                 lines.append(Problem(f"{each.text}; move, turn or shrink it", "sensors", target=Target(piece=piece.get(id, ""), sensor=id)))
         return lines
 
-    def _for(self, material: str) -> Checker | None:
-        if material != self._name:
-            self._name, self._checker, self._fault = material, None, ""
+    def _for(self, skin: Skin) -> Checker | None:
+        names = skin.printer, skin.material
+        if names != self._names:
+            self._names, self._checker, self._fault = names, None, ""
             try:
-                self._checker = Checker(_load(material))
+                used = used_by(skin)
+                # The same room as `skinfab place` keeps: what fits here can be printed.
+                self._checker = Checker(with_room_for_nozzle(used.material, used.printer)[0])
             except SkinfabError as fault:
                 self._fault = str(fault)
         return self._checker
@@ -89,7 +92,3 @@ class Live:
 def words(found: Iterable[Finding]) -> list[str]:
     """The worst first, without the sensor's name: they stand beside it."""
     return [each.brief or each.text for each in sorted(found, key=lambda f: -f.amount)]
-
-
-def _load(name: str) -> Material:
-    return load_material(name)

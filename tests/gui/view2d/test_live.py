@@ -8,7 +8,7 @@ from gui.view2d.live import Live, words
 def test_only_what_changed_is_looked_at(skin):
     live = Live()
     assert live.look(skin) and live.findings == {} and live.problems(skin) == []
-    assert not live.look(replace(skin, printer="another"))
+    assert not live.look(replace(skin, seed=7))
     assert live.look(replace(skin, sensors=skin.sensors[:1]))
 
 
