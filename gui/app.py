@@ -22,8 +22,10 @@ from gui.commands.sensors import SensorCommands
 from gui.commands.view import ViewCommands
 from gui.desk import Desk
 from gui.dialogs.dialogs import Dialogs
+from gui.drop import accept_files
 from gui.jobs.background import Background
 from gui.jobs.runner import Runner
+from gui.jobs.sweep import Sweep
 from gui.jobs.worker import Step, sentence_of
 from gui.panels.new_sensor import NewSensorPanel
 from gui.panels.pieces import PiecesPanel
@@ -37,7 +39,7 @@ from gui.state.describe import describe
 from gui.state.problem import Problem
 from gui.state.profiles import ProfileShelf
 from gui.state.session import Session, Topic
-from gui.state.store import Remembered, recall, remember, state_folder
+from gui.state.store import Remembered, on_screen, recall, remember, state_folder
 from gui.theme import THEMES, apply
 from gui.tools.measure import Measure
 from gui.tools.toolbox import Toolbox
@@ -73,11 +75,12 @@ class App:
 
     def __init__(self, root: tk.Tk, path: Path | None = None, *, dialogs: Dialogs | None = None) -> None:
         self.root = root
+        self.sweep = Sweep(root)
         root.title("skinfab")
         root.minsize(*LEAST_SIZE)
         state = state_folder()
         remembered = recall(state)
-        root.geometry(remembered.geometry or FIRST_SIZE)
+        root.geometry(on_screen(remembered.geometry, root.winfo_screenwidth(), root.winfo_screenheight()) or FIRST_SIZE)
         self.theme = THEMES[remembered.theme]
         apply(root, self.theme)
         self.session, self.derived, self.shelf = Session(), Derived(), ProfileShelf()
@@ -102,19 +105,28 @@ class App:
         root.report_callback_exception = self._fault
         self._build(remembered)
         root.protocol("WM_DELETE_WINDOW", self.close)
-        root.after(50, self._begin, path)
+        accept_files(root, self.files.open_path)
+        self._first = root.after(50, self._begin, path)
 
     def close(self) -> None:
         """Ask about unsaved work, and end."""
-        if self._closed or not self.files.may_leave():
-            return
+        if not self._closed and self.files.may_leave():
+            self._end(keep_copy=False)
+
+    def abandon(self) -> None:
+        """End without a question, as one who is told to by the system must; unsaved work is offered at the next start."""
+        if not self._closed:
+            self._end(keep_copy=True)
+
+    def _end(self, *, keep_copy: bool) -> None:
         self._closed = True
-        self.root.after_cancel(self._watch)
-        geometry = self.root.geometry()
+        for timer in (self._watch, self._first):
+            self.root.after_cancel(timer)
         self.runner.close()
         self.background.close()
-        self.autosave.close()
-        what = replace(self.files.remembered, theme=self.theme.name, geometry=geometry)
+        self.autosave.close(keep=keep_copy)
+        self.sweep.close()
+        what = replace(self.files.remembered, theme=self.theme.name, geometry=self.root.geometry())
         self.desk.guarded("close", lambda: remember(self.desk.state, what))
         self.root.destroy()
 
@@ -249,11 +261,20 @@ class App:
 
     def _fault(self, kind: type[BaseException], fault: BaseException, trace: TracebackType | None) -> None:
         """What a callback raised: a sentence, never a traceback or a dead window."""
+        if isinstance(fault, KeyboardInterrupt):
+            self.abandon()
+            raise fault  # the loop ends with it
         sentence, ours = sentence_of(fault)
         if ours:
             self._log("".join(traceback.format_exception(kind, fault, trace)))
             sentence += f"; details are in {self._log_file}"
-        self.session.report("window", [Problem(sentence, "window")])
+        if self._closed:
+            return
+        try:
+            self.session.report("window", [Problem(sentence, "window")])
+        except Exception:  # one who listens to problems is what is broken: the loop must go on
+            self._log(traceback.format_exc())
+            self.status.say(sentence)
 
     def _log(self, trace: str) -> None:
         with contextlib.suppress(OSError), self._log_file.open("a", encoding="utf-8") as log:
@@ -267,10 +288,16 @@ def run(path: Path | None = None) -> None:
     ------
     InputError
         There is no screen.
+    KeyboardInterrupt
+        Ctrl-C on the terminal, or the system wants the program to end.
     """
     try:
         root = tk.Tk(className="skinfab")
     except tk.TclError as fault:
         raise InputError(f"there is no screen to open a window on ({fault}); set DISPLAY, or use the commands without a window") from fault
-    App(root, path)
-    root.mainloop()
+    app = App(root, path)
+    try:
+        root.mainloop()
+    except KeyboardInterrupt:
+        app.abandon()
+        raise
