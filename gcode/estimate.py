@@ -166,7 +166,7 @@ def timing(program: Program, printer: Printer) -> Timing:
                 table[:, k] = _trapezoid(e, step.rate * printer.pump.e_per_mm3, 0.0, 0.0, printer.motion.acceleration)
     _time_run(run, printer, table)
     start = np.concatenate([[0.0], np.cumsum(table[0])[:-1]])[: table.shape[1]]
-    return Timing(start, *table, acceleration=printer.motion.acceleration)
+    return Timing(start, table[0], table[1], table[2], table[3], printer.motion.acceleration)
 
 
 def _time_run(run: list[_Block], printer: Printer, table: NDArray[np.float64]) -> None:

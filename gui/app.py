@@ -15,6 +15,7 @@ from typing import get_args
 from gui.actions import Action, Actions
 from gui.commands.arrange import ArrangeCommands
 from gui.commands.edit import EditCommands
+from gui.commands.export import ExportCommands
 from gui.commands.file import FileCommands
 from gui.commands.help import HelpCommands
 from gui.commands.seams import SeamCommands
@@ -41,6 +42,8 @@ from gui.state.profiles import ProfileShelf
 from gui.state.session import Session, Topic
 from gui.state.store import Remembered, on_screen, recall, remember, state_folder
 from gui.theme import THEMES, apply
+from gui.toolpath.choice import ArcsChoice
+from gui.toolpath.tab import ToolPathTab
 from gui.tools.measure import Measure
 from gui.tools.toolbox import Toolbox
 from gui.view2d.view import View2D
@@ -134,7 +137,7 @@ class App:
         """Light or dark."""
         self.theme = THEMES[name]
         apply(self.root, self.theme)
-        for part in (self.view3d, self.view2d, self.problems, self.new_sensor):
+        for part in (self.view3d, self.view2d, self.problems, self.new_sensor, self.toolpath):
             part.restyle(self.theme)
         self.actions.refresh()
 
@@ -151,6 +154,11 @@ class App:
         self.tabs = ttk.Notebook(middle, name="tabs")
         self.view2d = View2D(self.tabs, session, self.derived, self.theme, name="view2d")
         self.tabs.add(self.view2d, text="Flat skin")
+        self.arcs = ArcsChoice()
+        self.toolpath = ToolPathTab(
+            self.tabs, session, self.theme, self.shelf, self.background, arcs=self.arcs, export=lambda: self.actions.do("export_gcode")
+        )
+        self.tabs.add(self.toolpath, text="Tool path")
         self.side = self._side_panel(middle)
         middle.add(self.view3d, weight=5)
         middle.add(self.tabs, weight=6)
@@ -198,6 +206,7 @@ class App:
             *self.seams.actions(),
             *SensorCommands(desk).actions(),
             *self.toolbox.actions(),
+            *ExportCommands(desk, self.arcs).actions(),
             *views.actions(),
             *HelpCommands(desk, lambda: self.actions.keys()).actions(),
         ]

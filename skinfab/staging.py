@@ -26,7 +26,7 @@ _NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS)
 
 
 @contextmanager
-def staged_folder(target: str | Path) -> Iterator[Path]:
+def staged_folder(target: str | Path, *, tidy: bool = True) -> Iterator[Path]:
     """Give a temporary folder inside `target`; on success move its files into place, otherwise remove it.
 
     Files in ``gcode/``, ``mould/`` and ``toolpath/`` that the ``report.json`` of an earlier run lists and this run has not
@@ -37,6 +37,8 @@ def staged_folder(target: str | Path) -> Iterator[Path]:
     ----------
     target : path
         Made with its parents where it is missing.
+    tidy : bool
+        Whether files of an earlier run are removed; not where only a part of what that made is made anew.
 
     Yields
     ------
@@ -75,7 +77,7 @@ def staged_folder(target: str | Path) -> Iterator[Path]:
             # The hidden folder is ours to know: the user gave the target.
             raise InputError(str(fault).replace(str(stage), str(target))) from fault
         with _signals_wait():
-            _or_explain(lambda: _move_into_place(stage, target), target)
+            _or_explain(lambda: _move_into_place(stage, target, tidy=tidy), target)
     finally:
         with _signals_wait():
             shutil.rmtree(stage, ignore_errors=True)
@@ -125,7 +127,7 @@ def _make_folders(target: Path) -> list[Path]:
     return missing[::-1]
 
 
-def _move_into_place(stage: Path, target: Path) -> None:
+def _move_into_place(stage: Path, target: Path, *, tidy: bool) -> None:
     new = sorted((p.relative_to(stage) for p in stage.rglob("*") if p.is_file()), key=lambda p: (p == Path("report.json"), p))
     for name in new:
         # All checks come before the first rename: either everything moves or nothing.
@@ -135,7 +137,7 @@ def _move_into_place(stage: Path, target: Path) -> None:
         folder.mkdir(parents=True, exist_ok=True)
         if folder.stat().st_dev != stage.stat().st_dev:
             raise InputError(f"{folder} lies on another disk than {target}, so the results cannot appear as one; give another -o")
-    stale = _made_earlier(target) - set(new)
+    stale = _made_earlier(target) - set(new) if tidy else set()
     for name in new:
         with (stage / name).open("rb+") as written:
             os.fsync(written.fileno())

@@ -1,0 +1,1 @@
+"""The tool path of a piece: what the head does when, seen before it is printed."""
