@@ -62,6 +62,7 @@ class Runner:
         self._changed = changed
         self._log = log
         self._job: Job | None = None
+        self._closed = False
         self._retired: list[tuple[SpawnProcess, float]] = []
         self._process, self._channel = _start()
         self._timer = clock.after(POLL_MS, self._poll)
@@ -88,6 +89,8 @@ class Runner:
         **arguments
             Values that can be pickled.
         """
+        if self._closed:  # the window was closed under a question that led here
+            return
         self.cancel()
         self._job = Job(label, done, failed)
         self._changed(Step(0.0, label))
@@ -108,6 +111,7 @@ class Runner:
 
     def close(self) -> None:
         """End the process, at the end of the program."""
+        self._closed = True
         self._clock.after_cancel(self._timer)
         self._job = None
         self._channel.close()
@@ -130,7 +134,7 @@ class Runner:
         # What it says may start other work, on another channel.
         channel = self._channel
         try:
-            while channel is self._channel and channel.poll():
+            while not self._closed and channel is self._channel and channel.poll():
                 self._hear(channel.recv())
         except (EOFError, ConnectionResetError):
             self._mourn()

@@ -57,12 +57,15 @@ class Outcome:
 def serve(channel: Connection) -> None:
     """Do one order after the other until the window is gone. The main function of the process."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C on a terminal reaches all its processes; the window decides
-    signal.signal(signal.SIGTERM, _interrupt)  # cancelled: unwind, so that half-written files go
+    signal.signal(signal.SIGTERM, _end)
     try:
         _import_what_takes_long()
         while True:
             order = channel.recv()
-            channel.send(_obey(order, channel))
+            signal.signal(signal.SIGTERM, _interrupt)  # cancelled: unwind, so that half-written files go
+            outcome = _obey(order, channel)
+            signal.signal(signal.SIGTERM, _end)
+            channel.send(outcome)
     except (EOFError, BrokenPipeError, ConnectionResetError, KeyboardInterrupt):
         return  # the window was closed, or wants this work no more
 
@@ -108,6 +111,10 @@ def _obey(order: Order, channel: Connection) -> Outcome:
             channel.send(Step(fraction, label))
 
     return outcome_of(lambda: order.function(**order.arguments, progress=progress))
+
+
+def _end(number: int, frame: FrameType | None) -> None:
+    os._exit(0)  # nothing is begun that would have to be cleaned up, and imports that are broken off only make noise
 
 
 def _interrupt(number: int, frame: FrameType | None) -> None:

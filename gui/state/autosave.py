@@ -92,9 +92,12 @@ class Autosave:
         with self._change:
             return self._change.wait_for(lambda: self._wanted is None and not self._writing, timeout_s)
 
-    def close(self) -> None:
-        """Drop the copy and end the thread: the program ends as it should."""
-        self.drop()
+    def close(self, *, keep: bool = False) -> None:
+        """End the thread: the program ends as it should, and drops the copy unless it is to be kept for the next start."""
+        if keep:
+            self.settle()
+        else:
+            self.drop()
         with self._change:
             self._closed = True
             self._change.notify_all()

@@ -154,8 +154,15 @@ class Session:
         self._listeners.setdefault(topic, []).append(callback)
 
     def _tell(self, topic: str) -> None:
+        # Where one of them fails, the others must still not show what is no longer so.
+        faults: list[Exception] = []
         for callback in self._listeners.get(topic, ()):
-            callback()
+            try:
+                callback()
+            except Exception as fault:
+                faults.append(fault)
+        if faults:
+            raise faults[0]
 
     def _went(self, label: str | None) -> str | None:
         if label is not None:

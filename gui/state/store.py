@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -49,6 +50,22 @@ class Remembered:
         """The same with `path` as the newest file."""
         newest = str(Path(path).absolute())
         return replace(self, recent=(newest, *(p for p in self.recent if p != newest))[:MOST_RECENT])
+
+
+def on_screen(geometry: str, width: int, height: int) -> str:
+    """A window's geometry as far as it suits a screen of that many pixels: without a place that is not on it, "" for none at all.
+
+    Examples
+    --------
+    >>> on_screen("1280x760+40+10", 1920, 1080), on_screen("1280x760+2500+10", 1920, 1080), on_screen("large", 1920, 1080)
+    ('1280x760+40+10', '1280x760', '')
+    """
+    found = re.fullmatch(r"(\d{1,5}x\d{1,5})\+(-?\d{1,5})\+(-?\d{1,5})", geometry)
+    if found is None:
+        return ""
+    size, x, y = found[1], int(found[2]), int(found[3])
+    # Its title bar can be taken hold of.
+    return geometry if -50 <= x <= width - 100 and -50 <= y <= height - 50 else size
 
 
 def recall(folder: Path) -> Remembered:
