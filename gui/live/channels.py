@@ -1,0 +1,58 @@
+"""Which channel of a stream is which sensor of the skin, what it is called, and whether it is watched for contacts."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from skinfab.readout.frame import Channel, Stream
+from skinfab.skin import Skin
+from skinfab.wiring import BOARD_INPUTS
+
+
+def sensors_of(stream: Stream, skin: Skin | None) -> tuple[str, ...]:
+    """The sensor of each channel, by id; "" where it has none.
+
+    What a channel says of itself counts first: its sensor, then its board and input, as in the wiring table. Otherwise its place in
+    the stream is its number, as skins count channels.
+    """
+    if skin is None:
+        return ("",) * len(stream.channels)
+    ids, by_number = {s.id for s in skin.sensors}, {s.channel: s.id for s in skin.sensors}
+    return tuple(
+        channel.sensor if channel.sensor in ids else by_number.get(number_of(channel, k), "") for k, channel in enumerate(stream.channels)
+    )
+
+
+def number_of(channel: Channel, place: int) -> int:
+    """A channel's number over the whole skin, counted from 0.
+
+    Examples
+    --------
+    >>> number_of(Channel("A"), 3), number_of(Channel("B", board=2, board_input=1), 3)
+    (3, 17)
+    """
+    return (channel.board - 1) * BOARD_INPUTS + channel.board_input if channel.board > 0 else place
+
+
+def watched(stream: Stream, sensors: Sequence[str], skin: Skin | None) -> tuple[str, ...]:
+    """Names of the channels that are to be watched for contacts.
+
+    Those that measure contact, by what the stream says or, where it says nothing, by the pattern of their sensor on the skin. All,
+    where neither says anything of any.
+    """
+    kinds = {} if skin is None else {s.id: s.pattern.kind.split("-")[0] for s in skin.sensors}
+    said = [channel.kind or kinds.get(sensor, "") for channel, sensor in zip(stream.channels, sensors, strict=True)]
+    if not any(said):
+        return stream.names
+    return tuple(name for name, kind in zip(stream.names, said, strict=True) if kind == "contact")
+
+
+def label(name: str, sensor: str) -> str:
+    """What a strip is called: the sensor first, its channel where that is called otherwise.
+
+    Examples
+    --------
+    >>> label("S3", "C1"), label("S3", "S3"), label("U", "")
+    ('C1 (S3)', 'S3', 'U')
+    """
+    return f"{sensor} ({name})" if sensor and sensor != name else name
