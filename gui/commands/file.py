@@ -82,6 +82,7 @@ class FileCommands:
             path=path,
             units=choice.units,
             mend=choice.repair,
+            wrap_mm=choice.wrap_mm,
             printer=printer,
             material=material,
         )

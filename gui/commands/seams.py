@@ -36,6 +36,7 @@ class SeamCommands:
         self._desk = desk
         self._settled: list[tuple[NDArray[np.int64], list[Problem]]] = []
         self.method = "auto"
+        self.cones: int | None = None
         desk.session.listen("skin", self._follow)
 
     def actions(self) -> list[Action]:
@@ -64,6 +65,7 @@ class SeamCommands:
             source="flatten",
             skin=asked,
             method=self.method,
+            cones=self._cones(),
             anew=ids,
         )
 
@@ -94,6 +96,9 @@ class SeamCommands:
         label = f"flattening for {thickness:g} mm"
         self._desk.work(label, tasks.make_thick, take, source="flatten", skin=asked, thickness=thickness, method=self.method)
 
+    def _cones(self) -> int | None:
+        return self.cones if self.method == "bff-cones" else None
+
     def _has_marks(self) -> bool:
         return self._desk.session.skin is not None and self._desk.skin.marks is not None
 
@@ -102,6 +107,16 @@ class SeamCommands:
         chosen = tk.StringVar(menu, value=self.method)
         for name in ("auto", "bff-cones", *METHODS):
             menu.add_radiobutton(label=name, value=name, variable=chosen, command=partial(self.choose_method, name))
+        menu.add_separator()
+        menu.add_command(label="Cones for bff-cones …", command=self.choose_cones)
+
+    def choose_cones(self) -> None:
+        """How many cones bff-cones has, 0 for as many as pay; flattens by it."""
+        text = "How many cone points?\n0: as many as pay (the cube needs 8, the dodecahedron 20)"
+        number = self._desk.dialogs.number("Cones", text, least=0, most=200, value=self.cones or 0)
+        if number is not None:
+            self.cones = number or None
+            self.choose_method("bff-cones")
 
     def choose_method(self, method: str) -> None:
         """Flatten by another method from now on, and all pieces at once."""
@@ -118,7 +133,8 @@ class SeamCommands:
             if skin.seams is seams:
                 self._desk.session.report("flatten", said)  # after undo, what was said then
                 return
-        self._desk.work("flattening", tasks.reopen, self._take(skin, ""), source="flatten", skin=skin, method=self.method, anew=[])
+        take, method, cones = self._take(skin, ""), self.method, self._cones()
+        self._desk.work("flattening", tasks.reopen, take, source="flatten", skin=skin, method=method, cones=cones, anew=[])
 
     def _take(self, asked: Skin, label: str) -> Callable[[Reopened], None]:
         """What to do with the result for `asked`: a step of that name, or what completes the last step."""

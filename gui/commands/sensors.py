@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 from gui.actions import Action
 from gui.desk import Desk
@@ -10,6 +11,8 @@ from gui.jobs import tasks
 from gui.state.adopt import adopt
 from gui.state.selection import NOTHING
 from skinfab.skin import Skin
+
+_FILE_TIP = "Which sensors, and where, from a TOML file as skinfab place takes it (docs/sensors.md)."
 
 
 class SensorCommands:
@@ -23,11 +26,21 @@ class SensorCommands:
         tip = "Sensors where there is room: strain over the joints of a finger, contact elsewhere; those there are go."
         return [
             Action("auto_place", "Place automatically", "Sensors", self.place, "F7", self._desk.has_pieces, tip, True),
+            Action("place_file", "Place as a file says …", "Sensors", self.place_from_file, "", self._desk.has_pieces, _FILE_TIP),
             Action("clear", "Remove all sensors", "Sensors", self.clear, "", self._desk.has_sensors),
         ]
 
     def place(self) -> None:
         """Automatic sensors in place of those there are."""
+        self._place("place automatically", None)
+
+    def place_from_file(self) -> None:
+        """Those that a sensors file asks for, in place of those there are."""
+        path = self._desk.dialogs.sensors_path()
+        if path is not None:
+            self._place(f"place as in {path.name}", path)
+
+    def _place(self, label: str, file: Path | None) -> None:
         asked = self._desk.skin
 
         def take(result: tuple[Skin, tuple[str, ...]]) -> None:
@@ -36,10 +49,10 @@ class SensorCommands:
             if session.skin is None or session.skin.pieces != asked.pieces:
                 self._desk.complain("place", "the pieces changed while sensors were being placed; place them again")
                 return
-            session.do("place automatically", replace(session.skin, sensors=adopt(asked, skin).sensors))
+            session.do(label, replace(session.skin, sensors=adopt(asked, skin).sensors))
             self._desk.note("place", warnings, kind="warning")
 
-        self._desk.work("placing sensors", tasks.place_automatically, take, source="place", skin=asked)
+        self._desk.work("placing sensors", tasks.place_anew, take, source="place", skin=asked, file=file)
 
     def clear(self) -> None:
         """Take all off."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import tkinter as tk
 from collections.abc import Sequence
 from pathlib import Path
-from tkinter import filedialog
+from tkinter import filedialog, simpledialog
 
 from gui.dialogs.open_mesh import MeshChoice, ask_how_to_open
 from gui.dialogs.question import ask
@@ -28,6 +28,20 @@ class Dialogs:
         """A mesh or a skin to open."""
         kinds = [("meshes and skins", f"*.skin {MESHES}"), ("skins", "*.skin"), ("meshes", MESHES), ("all files", "*")]
         chosen = filedialog.askopenfilename(parent=self._master, title="Open a mesh or a skin", filetypes=kinds)
+        return Path(chosen) if chosen else None
+
+    def sensors_path(self) -> Path | None:
+        """A sensors file."""
+        chosen = filedialog.askopenfilename(parent=self._master, title="A sensors file", filetypes=[("sensors", "*.toml")])
+        return Path(chosen) if chosen else None
+
+    def number(self, title: str, text: str, *, least: int, most: int, value: int) -> int | None:
+        """A whole number; None for no answer."""
+        return simpledialog.askinteger(title, text, parent=self._master, minvalue=least, maxvalue=most, initialvalue=value)
+
+    def open_file(self, title: str, kinds: Sequence[tuple[str, str]]) -> Path | None:
+        """A file of one of these kinds: names with their patterns."""
+        chosen = filedialog.askopenfilename(parent=self._master, title=title, filetypes=list(kinds))
         return Path(chosen) if chosen else None
 
     def save_path(self, title: str, suffix: str, name: str) -> Path | None:

@@ -17,6 +17,7 @@ from skinfab.mesh.io import load_mesh
 from skinfab.mesh.repair import clean, repair
 from skinfab.mesh.surface import surface
 from skinfab.mesh.units import guess_units
+from skinfab.mesh.wrap import WRAP_OFFSET, wrap
 from skinfab.placement.place import place_sensors
 from skinfab.progress import Progress, part_of
 from skinfab.seams import partial
@@ -93,19 +94,24 @@ def look_at_mesh(*, path: Path, progress: Progress) -> MeshFacts:
     )
 
 
-def open_mesh(*, path: Path, units: str, mend: bool, printer: str, material: str, progress: Progress) -> Opened:
-    """A document of a mesh that is not cut yet."""
+def open_mesh(*, path: Path, units: str, mend: bool, wrap_mm: float, printer: str, material: str, progress: Progress) -> Opened:
+    """A document of a mesh that is not cut yet; of the outside alone where `wrap_mm` is above 0."""
     progress(0.1, f"reading {path.name}")
     loaded = load_usable(path, units=units, mend=mend)
+    mesh, notes = loaded.mesh, loaded.notes
+    if wrap_mm:
+        progress(0.3, "wrapping")
+        mesh = wrap(mesh, wrap_mm)
+        notes = (*notes, f"only the outside is skinned; the skin lies {wrap_mm * WRAP_OFFSET:.2g} mm off the object")
     skin = Skin(
-        mesh=loaded.mesh,
+        mesh=mesh,
         source=Source(loaded.file, loaded.sha256, loaded.units, loaded.scale),
         seams=np.zeros((0, 2), dtype=np.int64),
         pieces=(),
         printer=printer,
         material=material,
     )
-    return Opened(skin, loaded.notes)
+    return Opened(skin, notes)
 
 
 def open_skin(*, path: Path, progress: Progress) -> Opened:
@@ -120,17 +126,18 @@ def auto_cut(*, skin: Skin, progress: Progress) -> Reopened:
     return partial.auto_cut(skin, limits_of(skin), neck=material.neck, material=material, progress=progress)
 
 
-def reopen(*, skin: Skin, method: str, anew: Collection[str], progress: Progress) -> Reopened:
+def reopen(*, skin: Skin, method: str, cones: int | None, anew: Collection[str], progress: Progress) -> Reopened:
     """The pieces that the seams give as they are."""
-    return partial.reopen(skin, limits_of(skin), method=method, anew=anew, material=load_material(skin.material), progress=progress)
+    material = load_material(skin.material)
+    return partial.reopen(skin, limits_of(skin), method=method, cones=cones, anew=anew, material=material, progress=progress)
 
 
-def place_automatically(*, skin: Skin, progress: Progress) -> tuple[Skin, tuple[str, ...]]:
-    """Sensors in place of those there are, and what there is to say."""
+def place_anew(*, skin: Skin, file: Path | None, progress: Progress) -> tuple[Skin, tuple[str, ...]]:
+    """Sensors in place of those there are, automatic or as a file says, and what there is to say."""
     progress(0.1, "placing sensors")
     used = used_by(skin)
     roomy, wider = with_room_for_nozzle(used.material, used.printer)
-    sensors, warnings = place_sensors(skin, roomy)
+    sensors, warnings = place_sensors(skin, roomy, file)
     return replace(skin, sensors=sensors), (*wider, *warnings)
 
 

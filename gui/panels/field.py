@@ -47,8 +47,8 @@ class Field(ttk.Frame):
         words = ttk.Label(self, text=label)
         words.grid(row=0, column=0, sticky="w")
         self.entry = ttk.Entry(self, width=width, justify="right", name="entry")
-        self.entry.grid(row=0, column=1, padx=4)
-        ttk.Label(self, text=unit, style="Faint.TLabel", width=4).grid(row=0, column=2, sticky="w")
+        self.entry.grid(row=0, column=1, padx=3)
+        ttk.Label(self, text=unit, style="Faint.TLabel", width=3).grid(row=0, column=2, sticky="w")
         for key in ("<Return>", "<KP_Enter>", "<FocusOut>"):
             self.entry.bind(key, self._commit)
         self.entry.bind("<Escape>", self._revert)

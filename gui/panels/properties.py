@@ -13,6 +13,7 @@ from gui.panels.sensor_form import SensorForm
 from gui.state.derived import Derived
 from gui.state.profiles import ProfileShelf
 from gui.state.session import Session
+from skinfab.skin import Skin
 
 
 class PropertiesPanel(ttk.Frame):
@@ -62,7 +63,7 @@ class PropertiesPanel(ttk.Frame):
         if skin is None:
             wanted, title = "", ""
         elif selected.sensor:
-            wanted, title = "sensor", f"Sensor {selected.sensor}"
+            wanted, title = "sensor", self._sensor_title(skin, selected.sensor)
         elif selected.piece:
             wanted, title = "piece", f"Piece {selected.piece}"
         else:
@@ -76,3 +77,7 @@ class PropertiesPanel(ttk.Frame):
             self._shown = wanted
         if wanted:
             self._forms[wanted].refresh()
+
+    def _sensor_title(self, skin: Skin, id: str) -> str:
+        sensor = next(s for s in skin.sensors if s.id == id)
+        return f"{id}: {sensor.pattern.kind} on {sensor.piece}"

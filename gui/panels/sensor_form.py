@@ -82,7 +82,7 @@ class SensorForm(ttk.Frame):
         faults = check_sensor(skin.piece(sensor.piece), sensor, skin.sensors, material=profiles.roomy)
         self.fit.set("fits" if not faults else "; ".join(faults))
         self._fit_label.configure(style="Good.TLabel" if not faults else "Error.TLabel")
-        self.words.set(_words(sensor, predict(sensor, profiles)) + self._known_strain(skin, sensor))
+        self.words.set(_words(predict(sensor, profiles)) + self._known_strain(skin, sensor))
         self._stop_timer()
         self._timer = self.after(_REST_MS, self._ask_strain)
 
@@ -116,7 +116,7 @@ class SensorForm(ttk.Frame):
 
     def _field(self, master: tk.Misc, name: str, label: str, unit: str, tip: str, *, at: int) -> Field:
         field = Field(
-            master, label, unit=unit, tip=tip, name=name, complain=self._complain, width=8, take=lambda text: self._take(name, text)
+            master, label, unit=unit, tip=tip, name=name, complain=self._complain, width=7, take=lambda text: self._take(name, text)
         )
         field.grid(row=at // 2, column=at % 2, sticky="ew", pady=1, padx=(0, 4))
         return field
@@ -181,7 +181,7 @@ class SensorForm(ttk.Frame):
                 surfaces_of, surfaces, found = outcome.result
                 self._surfaces = surfaces_of, surfaces
                 mean, most = round(100 * found.mean, 2) + 0.0, round(100 * found.max, 1) + 0.0  # no minus before zero
-                words = f"\nworn: stretched {mean:.2f} % (at most {most:.1f} %), R x {found.resistance_factor:.3f}"
+                words = f"\nworn {mean:+.2f} % (most {most:+.1f} %), R x {found.resistance_factor:.2f}"
             self._strain = sensor, skin.mesh, words
             if words:
                 self.refresh()
@@ -201,9 +201,6 @@ def _two_columns(master: tk.Misc, name: str) -> ttk.Frame:
     return frame
 
 
-def _words(sensor: Sensor, known: Prediction) -> str:
+def _words(known: Prediction) -> str:
     r = known.resistance
-    return (
-        f"{sensor.pattern.kind} on {sensor.piece}: {known.length:.1f} mm, {known.ink_mm3:.1f} mm³ of ink\n"
-        f"R0 {r.median:.0f} kohm, nine in ten from {r.low:.0f} to {r.high:.0f}"
-    )
+    return f"{known.length:.1f} mm long, {known.ink_mm3:.0f} mm³ of ink\nR0 {r.median:.0f} kohm (nine in ten: {r.low:.0f} to {r.high:.0f})"

@@ -11,7 +11,7 @@ from gui.state.session import Session
 from skinfab.electrical import resistance
 from skinfab.errors import InputError
 
-_COLUMNS = (("id", "id", 46), ("kind", "pattern", 92), ("piece", "on", 36), ("channel", "ch", 30), ("r", "R, kohm", 96))
+_COLUMNS = (("id", "id", 42), ("kind", "pattern", 100), ("piece", "on", 34), ("channel", "ch", 28), ("r", "R, kohm", 92))
 
 
 class SensorsPanel(ttk.Frame):

@@ -41,7 +41,7 @@ def sensor(session, id="C1"):
 
 def test_a_sensor_is_moved_turned_and_wired_by_typing(root, session, panel):
     session.select(Target(piece="P1", sensor="C1"))
-    assert panel.title.get() == "Sensor C1"
+    assert panel.title.get() == "C1: contact-spiral on P1"
     type_into(root, panel, "sensor.place.x", "44,5")
     assert (sensor(session).x, sensor(session).y) == (44.5, 30.0) and session.undo_label == "move C1"
     type_into(root, panel, "sensor.place.angle", "90")
@@ -88,7 +88,7 @@ def test_prediction_fit_and_strain_are_said(root, session, panel):
     while "worn" not in words.get():
         assert time.monotonic() < end
         root.update()
-    assert "stretched 0.00 %" in words.get(), "a plate is worn as flat as it was made"
+    assert "worn +0.00 %" in words.get(), "a plate is worn as flat as it was made"
     type_into(root, panel, "sensor.place.x", "95")
     assert "outside piece P1" in form.fit.get()
 
