@@ -28,6 +28,7 @@ from gui.jobs.background import Background
 from gui.jobs.runner import Runner
 from gui.jobs.sweep import Sweep
 from gui.jobs.worker import Step, sentence_of
+from gui.live.tab import LiveTab
 from gui.panels.new_sensor import NewSensorPanel
 from gui.panels.pieces import PiecesPanel
 from gui.panels.problems import ProblemsPanel
@@ -125,6 +126,7 @@ class App:
         self._closed = True
         for timer in (self._watch, self._first):
             self.root.after_cancel(timer)
+        self.live.close()
         self.runner.close()
         self.background.close()
         self.autosave.close(keep=keep_copy)
@@ -137,7 +139,7 @@ class App:
         """Light or dark."""
         self.theme = THEMES[name]
         apply(self.root, self.theme)
-        for part in (self.view3d, self.view2d, self.problems, self.new_sensor, self.toolpath):
+        for part in (self.view3d, self.view2d, self.problems, self.new_sensor, self.toolpath, self.live):
             part.restyle(self.theme)
         self.actions.refresh()
 
@@ -159,6 +161,8 @@ class App:
             self.tabs, session, self.theme, self.shelf, self.background, arcs=self.arcs, export=lambda: self.actions.do("export_gcode")
         )
         self.tabs.add(self.toolpath, text="Tool path")
+        self.live = self._live_tab()
+        self.tabs.add(self.live, text="Live")
         self.side = self._side_panel(middle)
         middle.add(self.view3d, weight=5)
         middle.add(self.tabs, weight=6)
@@ -172,6 +176,19 @@ class App:
         root.configure(menu=self.actions.menu_bar(submenus))
         apply(root, self.theme)  # menus too
         body.pack(side="top", fill="both", expand=True)
+
+    def _live_tab(self) -> LiveTab:
+        return LiveTab(
+            self.tabs,
+            self.session,
+            self.derived,
+            self.theme,
+            view3d=self.view3d,
+            view2d=self.view2d,
+            ask_open=lambda title, kinds: self.desk.dialogs.open_file(title, kinds),
+            ask_save=lambda title, suffix, name: self.desk.dialogs.save_path(title, suffix, name),
+            log=self._log,
+        )
 
     def _side_panel(self, master: tk.Misc) -> ttk.Frame:
         session, complain = self.session, self.status.tip
