@@ -12,6 +12,7 @@ from typing import TypeAlias
 
 from gcode.check_balance import balance_findings
 from gcode.check_bead import bead_findings, meant_area
+from gcode.check_blob import blob_findings
 from gcode.check_commands import command_findings
 from gcode.check_file import file_findings
 from gcode.check_grbl import grbl_findings
@@ -113,7 +114,7 @@ def judge(
     (['it reaches X400.0000, the bed ends at X350.0000'], 'line 4: G5 is not supported; use lines and arcs in the XY plane')
     """
     judged, fault = trace_as_far(text, spindle=printer.spindle, motion=printer.motion)
-    laid = laid_pieces(judged, printer)
+    laid, area = laid_pieces(judged, printer), meant_area(judged, bead_area)
     wall = mould.wall if mould else wall
     mistaken = tuple(piece_findings(text, mould)) if mould else ()
     if mistaken:
@@ -127,11 +128,12 @@ def judge(
         *wait_findings(judged, printer),
         *height_findings(judged, printer),
         *ink_findings(judged, laid),
-        *bead_findings(judged, laid, printer, meant_area(judged, bead_area)),
+        *bead_findings(judged, laid, printer, area),
         *(mould_findings(judged, laid, mould) if mould else ()),
         *mistaken,
         *(wall_findings(judged, wall, printer.nozzle) if wall else ()),
         *balance_findings(judged, printer),
+        *blob_findings(judged, printer, area),
     ]
     for move in judged.moves:
         for what, remedy in _faults_of(move, printer):

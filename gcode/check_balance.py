@@ -24,7 +24,7 @@ _FOREIGN_ROUNDING = 10**-3
 
 
 @dataclass(frozen=True)
-class _Run:
+class Run:
     """Moves without a way in X and Y, from one move in the plane to the next: is that one ink, and the one before them?"""
 
     moves: tuple[Move, ...]
@@ -34,6 +34,7 @@ class _Run:
 
     @property
     def pushed(self) -> float:
+        """E in all."""
         return math.fsum(m.e for m in self.moves)
 
 
@@ -56,13 +57,13 @@ def balance_findings(judged: Trace, printer: Printer) -> Iterator[Finding]:
     faulty: set[str] = set()
     standing: dict[str, list[Move]] = {}
     filling = 0  # the line of the last
-    for run in _runs(judged.moves):
+    for run in runs_of(judged.moves):
         first_filling = run.is_first and not run.enters and run.pushed > 0
         for move in (m for m in run.moves if m.e):
             if found := _misplaced(move, run, last.get(move.pattern, 0), printer):
                 faulty.add(move.pattern)
                 yield Finding(move.line, *found, move.pattern)
-            if first_filling and (not named or _is_at_cleaning_place(move, printer)):
+            if first_filling and (not named or is_at_cleaning_place(move, printer)):
                 filling = move.line
             else:
                 standing.setdefault(move.pattern, []).append(move)
@@ -79,7 +80,8 @@ def balance_findings(judged: Trace, printer: Printer) -> Iterator[Finding]:
         yield from _as_a_whole(moves, [m for m in itertools.chain(*standing.values()) if m.pattern or not named], printer, filling)
 
 
-def _runs(moves: Sequence[Move]) -> Iterator[_Run]:
+def runs_of(moves: Sequence[Move]) -> Iterator[Run]:
+    """All standstills of a file, in order."""
     held: list[Move] = []
     before: Move | None = None
     inked = False
@@ -87,26 +89,27 @@ def _runs(moves: Sequence[Move]) -> Iterator[_Run]:
         if not move.is_planar:
             held.append(move)
             continue
-        yield _Run(tuple(held), before is not None and before.e > 0, move.e > 0, not inked)
+        yield Run(tuple(held), before is not None and before.e > 0, move.e > 0, not inked)
         held, before, inked = [], move, inked or move.e > 0
-    yield _Run(tuple(held), before is not None and before.e > 0, False, not inked)
+    yield Run(tuple(held), before is not None and before.e > 0, False, not inked)
 
 
-def _misplaced(move: Move, run: _Run, last_ink: int, printer: Printer) -> tuple[str, str] | None:
+def _misplaced(move: Move, run: Run, last_ink: int, printer: Printer) -> tuple[str, str] | None:
     """Ink on a lift, a prime that draws, or ink that is left as a blob; `last_ink` is the line of the pattern's."""
-    amount = _amount(move.e, printer)
+    amount = amount_of(move.e, printer)
     if move.start[2] != move.end[2]:
         where = "the ink is drawn out to a thread" if move.e > 0 else "part of the ink is drawn back only while the nozzle is away from it"
         return f"{amount} on a move in Z: {where}", "push or draw ink at standstill, on a line of its own"
     if move.e < 0 and run.enters and not run.leaves and run.pushed < 0:
         return f"{amount} draws ink back right before the path, where a prime pushes it", "turn its sign, or take it out"
     fills = run.is_first and not move.pattern and move.line <= last_ink
-    if move.e > 0 and not run.enters and not fills and not _is_at_cleaning_place(move, printer):
+    if move.e > 0 and not run.enters and not fills and not is_at_cleaning_place(move, printer):
         return f"{amount} is pushed out at standstill where no path follows: it leaves a blob", "turn its sign to retract, or take it out"
     return None
 
 
-def _is_at_cleaning_place(move: Move, printer: Printer) -> bool:
+def is_at_cleaning_place(move: Move, printer: Printer) -> bool:
+    """Does it end where the profile cleans the nozzle?"""
     place, (x, y) = printer.cleaning, printer.bed.origin
     step = 10**-XY_DECIMALS
     here_x, here_y = move.end[:2]
@@ -131,7 +134,7 @@ def _of_a_pattern(moves: Sequence[Move], standing: Sequence[Move], first: Move |
         else:
             yield from _as_a_whole(own, standing, printer)
     elif first and first.pattern and printer.pump.prime:
-        usual = _amount(printer.pump.prime * printer.pump.e_per_mm3, printer)
+        usual = amount_of(printer.pump.prime * printer.pump.e_per_mm3, printer)
         remedy = (
             f"prime {usual} before it and retract as much after it, or say prime = 0 and retract = 0 under [pump] in the printer profile"
         )
@@ -159,7 +162,7 @@ def _stroke_by_stroke(moves: Sequence[Move], standing: Sequence[Move], printer: 
 
 
 def _unequal(primed: float, drawn: float, printer: Printer) -> tuple[str, str]:
-    push, draw = _amount(primed, printer), _amount(drawn, printer)
+    push, draw = amount_of(primed, printer), amount_of(drawn, printer)
     if not drawn:
         return f"it primes {push} and does not retract: the nozzle drips", "retract as much after the path"
     if not primed:
@@ -184,12 +187,12 @@ def _as_a_whole(moves: Sequence[Move], standing: Sequence[Move], printer: Printe
             laid = True
             at_first = balance if at_first is None else at_first
             if last and abs(balance - at_first) > _FOREIGN_ROUNDING * count:
-                amount, change = _amount(abs(balance - at_first), printer), "more" if balance > at_first else "less"
+                amount, change = amount_of(abs(balance - at_first), printer), "more" if balance > at_first else "less"
                 yield Finding(last.line, f"the nozzle then holds {amount} {change} than at the first stroke's start", remedy, last.pattern)
                 return
     if at_first is None or not last or abs(balance) <= _FOREIGN_ROUNDING * count:
         return
-    amount, change = _amount(abs(balance), printer), "more" if balance > 0 else "less"
+    amount, change = amount_of(abs(balance), printer), "more" if balance > 0 else "less"
     if filling and balance < 0 and at_first == 0:
         held = f"the nozzle then holds {amount} less at the end than at the first stroke's start"
         what = f"{held}: what line {filling} pushes, away from the path, fills the nozzle and is no prime"
@@ -199,6 +202,6 @@ def _as_a_whole(moves: Sequence[Move], standing: Sequence[Move], printer: Printe
         yield Finding(last.line, what, remedy, last.pattern)
 
 
-def _amount(e: float, printer: Printer) -> str:
+def amount_of(e: float, printer: Printer) -> str:
     """As the file says it: E, or what the spindle pumps."""
     return f"{e:.5g} mm^3" if printer.spindle else f"E{e:.6g}"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from bisect import bisect_right
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
@@ -34,7 +35,11 @@ RESETS = ("M501", "M502")
 CALLS = ("M23", "M24", "M32", "M98", *(f"M{number}" for number in range(810, 820)))
 #: Of the flags of M111 (marlinfw.org): echo 1, info 2, errors 4, dry run 8, communication 16, levelling 32.
 DRY_RUN = 8
+#: What each of these sets by S holds until the next of them.
+SWITCHES = frozenset({"M111", "M209"})
 STOPS = ("M112", "M410", "M524")
+#: Of an extruder of several pumps: shares of each, one by one, made valid, all at once, along Z (marlinfw.org, M163 to M166).
+MIXES = ("M163", "M164", "M165", "M166")
 #: Motions of the firmware's own: pattern, retract, wipe, park, sled, go to mesh point, resume, calibrate, change of filament,
 #: babystep, stow (the head may rise for it).
 UNFOLLOWED = (
@@ -51,6 +56,7 @@ class State:
     wet: bool
     ink_follows: bool
     homed: bool
+    holds_for_ink: bool  # ink is pushed or drawn after it and before the next of its code
 
     @property
     def z_by_hand(self) -> bool:
@@ -81,6 +87,8 @@ def command_findings(judged: Trace, printer: Printer) -> Iterator[Finding]:
     inked = [m.line for m in judged.moves if m.e > 0 and m.is_planar]
     first, last = min(inked, default=math.inf), max(inked, default=-math.inf)
     homed = False
+    pushed = [m.line for m in judged.moves if m.e]
+    until = _next_of(judged, SWITCHES)
     for command in judged.commands:
         code = command.code
         if code in _PLAIN and command.words.keys() <= _WORDS[code]:
@@ -89,11 +97,25 @@ def command_findings(judged: Trace, printer: Printer) -> Iterator[Finding]:
         if code.startswith("T") and code != "T0":
             rules = (TOOL,)
         if rules:
-            state = State(printer, wet=command.line >= first, ink_follows=command.line < last, homed=homed)
+            behind = bisect_right(pushed, command.line)
+            holds = behind < len(pushed) and pushed[behind] < until.get(command.line, math.inf)
+            state = State(printer, wet=command.line >= first, ink_follows=command.line < last, homed=homed, holds_for_ink=holds)
             for rule in rules:
                 if found := rule.when(command, state):
                     yield Finding(command.line, rule.what.format(code=code, text=found), rule.remedy)
         homed |= code == "G28"
+
+
+def _next_of(judged: Trace, codes: frozenset[str]) -> dict[int, int]:
+    """Lines of commands that set something, and the line of the next that sets it anew."""
+    found: dict[int, int] = {}
+    later: dict[str, int] = {}
+    for command in reversed(judged.commands):
+        if command.code in codes and "S" in command.words:
+            if command.code in later:
+                found[command.line] = later[command.code]
+            later[command.code] = command.line
+    return found
 
 
 def _probes(_: Command, state: State) -> bool:
@@ -165,7 +187,12 @@ def _amid_the_ink(_: Command, state: State) -> bool:
 
 def _dry_run(command: Command, state: State) -> bool:
     """Bit 3 of its flags: the head moves and E does not."""
-    return state.ink_follows and bool(int(command.words.get("S") or 0.0) & DRY_RUN)
+    return state.holds_for_ink and bool(int(command.words.get("S") or 0.0) & DRY_RUN)
+
+
+def _retracts_by_itself(command: Command, state: State) -> bool:
+    """An S without a number is 1 (Marlin's parser.h)."""
+    return state.holds_for_ink and command.words.get("S", 0.0) != 0
 
 
 def _sets_amid_the_ink(command: Command, state: State) -> bool:
@@ -255,6 +282,7 @@ RULES = (
         "put it at the end",
     ),
     Rule(STOPS, _always, "{code} stops the machine at once: what follows is not printed", "take it out"),
+    Rule(("M997",), _always, "M997 restarts the machine with another firmware: what follows is not printed", "take it out"),
     Rule(("M81",), _before_the_last_ink, "M81 turns the power off before the last ink: what follows is not printed", "put it at the end"),
     Rule(
         ("M85",),
@@ -299,6 +327,13 @@ RULES = (
         "send it before the start, not in the file",
     ),
     Rule(("M111",), _dry_run, "{code} begins a dry run: the head moves and no ink comes", "take it out, or leave out the 8 of S"),
+    Rule(
+        ("M209",),
+        _retracts_by_itself,
+        "M209 S1 makes each prime and retract the firmware's own, of a length that is stored in the machine",
+        "take it out, or send M209 S0",
+    ),
+    Rule(MIXES, _always, "{code} shares the ink among several pumps, the profile has one", "take it out"),
     Rule(
         ("M28",),
         _before_the_last_ink,

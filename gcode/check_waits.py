@@ -15,11 +15,13 @@ from skinfab.tolerances import WET_DWELL_S
 STOPPED = {"M0": "a click", "M1": "a click", "M25": "someone to resume", "M226": "a pin", "M601": "someone to resume"}
 
 #: They wait for a temperature: with S while it is lower, with R in any case, so with some sensors at S0 too.
-TEMPERATURE = frozenset({"M109", "M116", "M190", "M191"})
+TEMPERATURE = frozenset({"M109", "M116", "M190", "M191", "M192"})
 
 
 def wait_findings(judged: Trace, printer: Printer) -> Iterator[Finding]:
-    """Waits for somebody before the last ink, any wait between two moves of one stroke, and a dwell the silicone does not stand.
+    """Waits for somebody before the last ink, any wait between two moves of one stroke, and dwells the silicone does not stand.
+
+    All dwells from one ink to the next are one wait: the bead laid before sets through all of them.
 
     A stroke ends where the nozzle lifts: a way at print height without ink does not end it. A dwell after a lift, after
     the last ink before one, or before the ink is none of these.
@@ -40,6 +42,7 @@ def wait_findings(judged: Trace, printer: Printer) -> Iterator[Finding]:
     lays = [m.e > 0 and m.is_planar for m in ways]
     after_ink = _held(lays, lifts)
     before_ink = _held(lays[::-1], lifts[::-1])[::-1]
+    at_ink, waited, told = -1, 0.0, False  # the ink before this dwell, the dwells since, and whether they were told to be too long
     for command in judged.commands:
         code = command.code
         if code not in STOPPED and code not in TEMPERATURE and code != "G4":
@@ -53,13 +56,20 @@ def wait_findings(judged: Trace, printer: Printer) -> Iterator[Finding]:
                 yield Finding(command.line, what, "take it out")
             continue
         after = bisect_left(lines, command.line)
-        if code == "G4" and (seconds := _seconds(command, printer)) > (most := _longest(printer)):
-            what = f"G4 waits {seconds:g} s in the midst of the ink, where {most:g} is the most, and the silicone sets meanwhile"
-            yield Finding(command.line, what, "shorten it, or take it out", ways[after].pattern)
-            continue
+        if code == "G4":
+            if (ink := bisect_left(inked, command.line)) != at_ink:
+                at_ink, waited, told = ink, 0.0, False
+            seconds = _seconds(command, printer)
+            waited += seconds
+            if waited > (most := _longest(printer)) and not told:
+                told = True
+                waits = f"G4 waits {seconds:g} s" if seconds == waited else f"G4 waits {seconds:g} s more, {waited:g} s in all"
+                what = f"{waits} in the midst of the ink, where {most:g} is the most, and the silicone sets meanwhile"
+                yield Finding(command.line, what, "shorten it, or take it out", ways[after].pattern)
+                continue
         if not (after_ink[after - 1] and before_ink[after]):
             continue
-        if code == "G4" and (seconds := _seconds(command, printer)) > 0:
+        if code == "G4" and seconds > 0:
             what = f"G4 waits {seconds:g} s within a stroke, and ink gathers where the nozzle stands"
             yield Finding(command.line, what, "put it behind the lift", ways[after].pattern)
         elif code != "G4" and printer.spindle is None:
@@ -72,8 +82,8 @@ def _is_low(z: float | None, printer: Printer) -> bool:
 
 
 def _longest(printer: Printer) -> float:
-    """The longest dwell, s; one that the profile itself asks for is meant."""
-    return max(WET_DWELL_S, printer.process.pause, printer.cleaning.seconds if printer.cleaning else 0.0)
+    """The longest wait from ink to ink, s; what the profile itself asks for is meant."""
+    return max(WET_DWELL_S, printer.process.pause + (printer.cleaning.seconds if printer.cleaning else 0.0))
 
 
 def _held(lays: list[bool], lifts: list[bool]) -> list[bool]:

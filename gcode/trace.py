@@ -12,7 +12,7 @@ from dataclasses import replace
 from gcode.geometry import Point
 from gcode.moves import Finding, Home, Move, Place, Trace
 from gcode.printer import Motion, Spindle
-from gcode.words import MODAL, SETTING, Command, read_commands
+from gcode.words import MODAL, MOTORS_OFF, SETTING, Command, read_commands
 from skinfab.errors import InputError
 
 #: What a line may have of what counts (`Command.size`): Marlin's MAX_CMD_SIZE and GRBL's LINE_BUFFER_SIZE, each without the
@@ -50,8 +50,9 @@ def trace_as_far(text: str, *, spindle: Spindle | None = None, motion: Motion | 
     try:
         for told in read_commands(text, blocks=spindle is not None):
             command = head.continued(told)
-            head.follow(command)
-            commands.append(command)
+            if not head.passes_over(command):
+                head.follow(command)
+                commands.append(command)
     except InputError as stopped:
         fault = stopped
     return Trace(tuple(head.moves), tuple(head.faults), tuple(commands), tuple(head.homes)), fault
@@ -92,6 +93,12 @@ class _Head:
         self.cold = self.warned_cold = False
         self.undone: Command | None = None  # a G90 that has undone an M83
         self.pattern = ""
+        self.homed: set[str] = set()  # axes that the file has homed, and whose motors hold since
+
+    def passes_over(self, command: Command) -> bool:
+        """A G28 O does nothing where every axis is homed (Marlin's G28.cpp)."""
+        asked_if_needed = command.code == "G28" and command.words.get("O", 0.0) != 0.0 and self.spindle is None
+        return asked_if_needed and len(self.homed) == len("XYZ")
 
     def continued(self, command: Command) -> Command:
         """A line of places alone as the motion it goes on with (RS-274/NGC, modal group 1)."""
@@ -135,6 +142,8 @@ class _Head:
             self._set_place(command)
         elif code == "G28":
             self._home(command)
+        elif code in MOTORS_OFF:
+            self.homed.clear()
         elif self.spindle and code in ("M3", "M4", "M5", "M2", "M30"):
             self._turn_pump(command, self.spindle)
             if code in ("M2", "M30"):
@@ -188,9 +197,11 @@ class _Head:
 
     def _feed(self, command: Command) -> None:
         if (feed := self._number(command, "F")) is not None:
-            if feed <= 0:
+            unset = feed == 0 and self.spindle is not None and command.code in ("G0", SETTING)
+            if feed <= 0 and not unset:
                 raise InputError(f"line {command.line}: F is {feed:g}; a speed must be positive")
-            self.speed = feed * self.scale / 60
+            # GRBL takes F0 where it needs no F, and has no speed from there on.
+            self.speed = None if unset else feed * self.scale / 60
 
     def _move(self, command: Command) -> None:
         self._feed(command)
@@ -255,8 +266,8 @@ class _Head:
 
     def _ink(self, command: Command) -> float:
         value = self._number(command, "E")
-        if value is None:
-            return 0.0
+        if value is None or self.spindle:
+            return 0.0  # GRBL has no E, which is a fault of its own
         if self.undone:
             self._fault(
                 self.undone, f"G90 after M83 makes E absolute again, so E from line {command.line} on is misread", "put M83 after G90"
@@ -317,6 +328,7 @@ class _Head:
     def _home(self, command: Command) -> None:
         z, lift = self.place[2], (command.words.get("R") or 0.0) * self.scale  # R: it rises by so much before (Marlin)
         self.homes.append(Home(command.line, homed_axes(command), None if z is None else z + lift, self.pattern))
+        self.homed.update(homed_axes(command))
         for axis in homed_axes(command):
             # Where the end stops are is the machine's affair: the place is known to it, not to the text.
             self.place["XYZ".index(axis)] = None

@@ -31,6 +31,7 @@ READ |= {
     "M83",
     "M85",
     "M206",
+    "M209",
     "M218",
     "M220",
     "M221",
@@ -53,7 +54,7 @@ _TAKE_T = HEATERS | SETTINGS | {"M206", "M218", "M221", "M420", "M900", "M906"}
 #: A line beyond this is not G-code, and a file beyond that is not a skin's.
 LINE_LIMIT, FILE_LIMIT = 4096, 256 * 2**20
 
-_COMMAND = re.compile(r"(?:[Nn]\d{1,9}\s*)?([GMT])\s*(\d{1,5})(\.\d{1,3})?(?![\d.])", re.IGNORECASE)
+_COMMAND = re.compile(r"(?:[Nn]\d{1,9}\s*)?([GMTO])\s*(\d{1,5})(\.\d{1,3})?(?![\d.])", re.IGNORECASE)
 _BARE = re.compile(r"(?:N\d{1,9}\s*)?(?=[EFIJKRSXYZ]\s*[-+.\d])", re.IGNORECASE)
 _WORD = re.compile(r"\s*([A-Z])\s*([-+]?(?:\d+\.?\d*|\.\d+))?", re.IGNORECASE)
 
@@ -61,6 +62,8 @@ _WORD = re.compile(r"\s*([A-Z])\s*([-+]?(?:\d+\.?\d*|\.\d+))?", re.IGNORECASE)
 _PLAIN = re.compile(r"(?:\s*[A-FH-LN-SU-Z]\s*[-+]?(?:\d{1,99}(?:\.\d{0,99})?|\.\d{1,99}))*\s*")
 _PLAIN_WORD = re.compile(r"([A-Z])\s*([-+.\d]+)")
 _BRACKETS = re.compile(r"\([^()]*\)")
+#: What GRBL passes over (its protocol.c): a bracket up to the next closing one or the line's end, and all behind a semicolon.
+_PASSED_OVER = re.compile(r"\([^)]*\)?|;(.*)")
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,32 +138,42 @@ def read_commands(text: str, *, blocks: bool = False) -> Iterator[Command]:
     [('G1', {'X': 1.5, 'Y': -2.0})]
     """
     for line, raw in enumerate(lines_of(text), 1):
-        body, mark, comment = raw.partition(";")
+        body, mark, comment = _uncommented(raw) if blocks else raw.partition(";")
         if len(body) > LINE_LIMIT:
             raise InputError(f"line {line} is {len(body)} characters long; that is not a G-code command")
-        if "(" in body:
+        if not blocks and "(" in body:
             body = _BRACKETS.sub(" ", body)
         body = body.partition("*")[0].strip()
         if not body or body == "%":
             if mark:
                 yield Command(line, "", {}, comment.strip(), 0)
             continue
-        size = _kept(raw, blocks=blocks)
+        if blocks:
+            size = len("".join(body.split()).encode())
+        else:
+            kept = raw.partition(";")[0].rstrip()
+            size = len(kept if kept.isascii() else kept.encode())
         for part in parted(body) if blocks else (body,):
-            code, words = _command(part, line)
+            code, words = _command(part, line, blocks=blocks)
             yield Command(line, code, words, comment.strip(), size)
 
 
-def _kept(raw: str, *, blocks: bool) -> int:
-    body = raw.partition(";")[0].rstrip()
-    if blocks:
-        body = "".join((_BRACKETS.sub("", body) if "(" in body else body).split()).replace("/", "")
-    return len(body if body.isascii() else body.encode())
+def _uncommented(raw: str) -> tuple[str, str, str]:
+    """A line as GRBL keeps it but for its blanks, then as `str.partition` says it: the mark and text of its comment.
+
+    GRBL has no block delete: it leaves each ``/`` out and obeys the line.
+    """
+    if "(" not in raw:
+        body, mark, comment = raw.partition(";")
+    else:
+        comments = [found[1] for found in _PASSED_OVER.finditer(raw) if found[0][0] == ";"]
+        body, mark, comment = _PASSED_OVER.sub(" ", raw), ";" * len(comments), "".join(comments)
+    return body.replace("/", ""), mark, comment
 
 
-def _command(body: str, line: int) -> tuple[str, dict[str, float | None]]:
+def _command(body: str, line: int, *, blocks: bool) -> tuple[str, dict[str, float | None]]:
     found = _COMMAND.match(body)
-    if found:
+    if found and (blocks or found[1] not in "Oo"):  # a program's number, which GRBL refuses: told as such
         code = _code(*found.groups())
         return code, _words(body[found.end() :], line, code) if code in READ else {}
     if bare := _BARE.match(body):

@@ -18,6 +18,7 @@ MODULES = {
     "check_waits": "waits",
     "check": "moves and ink",
     "check_balance": "prime and retract",
+    "check_blob": "prime and retract",
     "check_height": "heights",
     "check_ink": "wet ink",
     "check_bead": "the bead",

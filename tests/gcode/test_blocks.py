@@ -29,6 +29,16 @@ GRBL = load_printer("generic-grbl")
         ("n5 g1 x1", ["G1x1".upper()]),
         ("G1 X1", ["G1 X1"]),
         ("X1", ["X1"]),
+        ("G4 P1 G1 Y80", ["G4P1", "G1Y80"]),  # it dwells, then moves
+        ("G1 Y80 F100 S5 G4 P1", ["S5", "G4P1", "G1Y80F100"]),  # S acts first of all
+        ("M3 S100 G4 P.5 G91 X1 M0", ["M3S100", "G4P.5", "G91", "X1", "M0"]),
+        ("G4 P1 X5", ["G4P1", "X5"]),
+        ("G4 P1 F300", ["G4P1", "F300"]),
+        ("G4P1", ["G4P1"]),
+        ("G4", ["G4"]),
+        ("G4 P1 A3", ["G4 P1 A3"]),
+        ("G4 P1 G28", ["G4 P1 G28"]),  # two of a modal group
+        ("G4 P1 P2", ["G4P1P2"]),
         ("G1 X1 G0 Y1", ["G1 X1 G0 Y1"]),  # two that move: a fault of the line
         ("G90 G90", ["G90 G90"]),
         ("G90 G91 G0 X1", ["G90 G91 G0 X1"]),  # two of a modal group: GRBL halts there
@@ -49,6 +59,12 @@ def test_grbl_follows_a_block_as_its_parts() -> None:
     assert [m.line for m in one.moves] == [2, 3, 4]
 
 
+def test_a_dwell_with_the_pump_on_lays_its_ink_before_the_line_moves() -> None:
+    one = trace("G0 X0 Y0 Z5\nM3 S50\nS100 G4 P2 G1 X10 F600\n", spindle=GRBL.spindle)
+    assert [(m.line, m.e) for m in one.moves] == [(1, 0.0), (3, 2.0), (3, 1.0)]
+    assert one.moves[-1].end == (10.0, 0.0, 5.0) and not one.faults
+
+
 @pytest.mark.parametrize("line", ["G90 X400", "G17 X400", "G94 X400", "M5 X400", "G21 Y5 X400"])
 def test_the_motion_of_a_line_of_modes_is_judged(line: str) -> None:
     text = f"G21\nG90\nG0 Z10\nG1 X5 Y5 F600\n{line}\nG1 X10\n"
@@ -61,7 +77,7 @@ def test_what_grbl_takes_on_any_line_is_no_fault() -> None:
     assert not found.broken_off and not [f for f in found.findings if f.line < 7]
 
 
-@pytest.mark.parametrize("line", ["G90 G91 G0 X1", "G20 G21", "M3 M5"])
+@pytest.mark.parametrize("line", ["G90 G91 G0 X1", "G20 G21", "M3 M5", "G4 P1 G28"])
 def test_two_of_a_modal_group_break_it_off(line: str) -> None:
     assert "line 2: a second" in str(judge(f"G21\n{line}\n", GRBL).broken_off)
 

@@ -164,9 +164,9 @@ def test_a_file_of_anyones_may_fill_its_nozzle_first(printer: Printer) -> None:
     [
         (second_stroke(4, 4), None, ""),
         (
-            second_stroke(8, 0, 0).replace("G1 E4 ", "G1 E8 ").replace("G1 E0 F400\n", "").replace("G1 E-0 F400\n", ""),
+            second_stroke(6, 0, 0).replace("G1 E4 ", "G1 E6 ").replace("G1 E0 F400\n", "").replace("G1 E-0 F400\n", ""),
             10,
-            "E8 less than at",
+            "E6 less than at",
         ),
         (
             second_stroke(4, 4).replace("G0 Z10 F300\n", "G0 Z10 F300\nG1 E4\nG1 E-4\n", 1),
@@ -194,9 +194,9 @@ def test_within_a_pattern_each_stroke_draws_back_what_it_primed(printer: Printer
 
 def test_every_pattern_is_primed_alike(printer: Printer) -> None:
     line = "G0 X100 Y80 F6000\nG0 Z1.6 F300\nG1 X110 E40 F240\nG0 Z10 F300\nG0 X100 Y100 F6000\nG0 Z1.6 F300\n"
-    more = second_stroke(4, 8, 8).replace("G0 X100 Y150", "; pattern C2\nG0 X100 Y150")
+    more = second_stroke(4, 6, 6).replace("G0 X100 Y150", "; pattern C2\nG0 X100 Y150")
     ((at, what, where),) = found(HEAD + "; pattern C1\n" + more, printer)
-    assert (at, where) == (16, "C2") and "holds E4 more than at the first stroke's start" in what
+    assert (at, where) == (16, "C2") and "holds E2 more than at the first stroke's start" in what
     # A line that fills the nozzle before the first pattern is none of them.
     same = second_stroke(4, 4).replace("G0 X100 Y150", "; pattern C2\nG0 X100 Y150")
     assert found(HEAD.replace("G0 X100 Y100 F6000\nG0 Z1.6 F300\n", line) + "; pattern C1\n" + same, printer) == []

@@ -66,6 +66,13 @@ def test_the_sound_file_is_sound(printer: Printer, planned: Plan, home: str) -> 
         ("xy", "M112", "M112 stops the machine"),
         ("xy", "M410", "M410 stops the machine"),
         ("xy", "M524", "M524 stops the machine"),
+        ("xy", "M997", "M997 restarts the machine"),
+        ("xy", "M209 S1", "M209 S1 makes each prime and retract the firmware's own"),
+        ("xy", "M209 S", "M209 S1 makes each prime and retract the firmware's own"),
+        ("xy", "M163 S0 P0.5", "M163 shares the ink among several pumps"),
+        ("xy", "M164 S0", "M164 shares the ink among several pumps"),
+        ("xy", "M165 A0.5 B0.5", "M165 shares the ink among several pumps"),
+        ("xy", "M166 A0 Z10 I0 J1", "M166 shares the ink among several pumps"),
         ("xy", "M81", "M81 turns the power off before the last ink"),
         ("xy", "M85 S1", "M85 stops the machine for good"),
         ("xy", "M808 L3", "M808 marks moves that are run again"),
@@ -158,6 +165,11 @@ def test_a_printer_that_homes_z_does_so_before_the_ink(printer: Printer, line: s
         ("xy", "M900"),
         ("xy", "G69"),
         ("xy", "M25"),
+        ("xy", "M209"),
+        ("xy", "M209 S0"),
+        ("xy", "M209 S1\nM209 S0"),
+        ("xy", "M111 S8\nM111 S0"),
+        ("xy", "M111 S8\nM111\nM111 S7"),
         ("xy", "M226 P1 S1"),
         ("xy", "M117 Heating is off, 0% Q"),
     ],
@@ -213,6 +225,45 @@ def test_what_is_usual_before_the_ink_passes(printer: Printer, line: str) -> Non
 def test_what_spoils_the_ink_before_it_begins(printer: Printer, line: str) -> None:
     (fault,) = check_text(INK_AND_INK.format(wet="", after="").replace("M83", f"M83\n{line}"), printer)
     assert fault.line == 3
+
+
+@pytest.mark.parametrize(
+    ("lines", "faults"),
+    [
+        ("M111 S8\nG1 X101 E4 F240\nM111 S0", [7]),  # ink on the way
+        ("M111 S8\nG1 E2\nM111 S0\nG1 E-2", [7]),
+        ("M111 S8\nM111 S24\nM111 S0", []),
+        ("M111 S8\nM111", [7]),  # tells, and takes nothing back
+        ("M209 S1\nG1 E2 F240\nM209 S0\nG1 E-2", [7]),
+    ],
+)
+def test_a_switch_is_a_fault_where_ink_comes_before_it_is_taken_back(printer: Printer, lines: str, faults: list[int]) -> None:
+    assert [at for at, what in found(printer, "xy", wet=lines) if "dry run" in what or "M209" in what] == faults
+
+
+@pytest.mark.parametrize(
+    ("first", "later", "faults"),
+    [
+        ("G28", "G28 O", []),  # all is homed: it does nothing
+        ("G28\nM84", "G28 O", ["homes Z"]),
+        ("G28 X Y", "G28 O", ["homes Z"]),
+        ("G28", "G28 O0", ["homes Z"]),
+        ("G28", "G28", ["homes Z"]),
+    ],
+)
+def test_homing_only_where_it_is_needed(first: str, later: str, faults: list[str], printer: Printer) -> None:
+    text = INK_AND_INK.format(wet="", after=f"G0 Z10 F300\n{later}\nG0 Z10 F300\n").replace("G28 X Y", first)
+    told = check_text(text, replace(printer, home="xyz"))
+    lines = text.splitlines()
+    at = len(lines) - lines[::-1].index(later)
+    assert [word for f in told for word in faults if word in f.what and f.line == at] == faults
+    assert faults or not told
+
+
+def test_homing_where_it_is_needed_homes(printer: Printer) -> None:
+    text = INK_AND_INK.format(wet="", after="")
+    assert not check_text(text.replace("G28 X Y", "G28 O"), replace(printer, home="xyz"))
+    assert "it homes Z" in check_text(text.replace("G28 X Y", "G28 O"), printer)[0].what
 
 
 def test_motors_may_rest_before_they_are_homed(printer: Printer) -> None:

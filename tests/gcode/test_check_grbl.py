@@ -126,6 +126,38 @@ def test_findings_speak_of_s_and_the_pump() -> None:
     assert not [what for _, what in back if "E-" in what or "make E" in what]
 
 
+@pytest.mark.parametrize("note", ["(left open", "(a (b) ", "(x; y)", "/", " / ", "(one) (two", "; a ( b"])
+def test_what_grbl_leaves_out_of_a_line(note: str) -> None:
+    """It obeys the rest: no bracket and no slash hides a move that it makes."""
+    text = HEAD + INK.format(60)
+    front, behind = (f"G1 X900{note}" if note[0] in ";(" else f"{note}G1 X900"), "G1 X50"
+    said = told(text + f"{front}\n{behind}\n")
+    assert [(at, what.partition(",")[0]) for at, what in said] == [(10, "it reaches X900.0000")]
+
+
+def test_a_semicolon_within_brackets_ends_no_line() -> None:
+    assert [at for at, what in told(HEAD + INK.format(60) + "(a; b) G1 X900\nG1 X50\n")] == [10]
+    assert not told(HEAD + INK.format(60) + "; (a) G1 X900\n(b G1 X900\nG1 X50 ; ) G1 X900\n")
+
+
+def test_the_number_of_a_program_is_refused_by_grbl_and_read_past() -> None:
+    sound = HEAD + INK.format(60)
+    assert told("O1000 (a skin)\n" + sound) == [(1, "GRBL does not know O1000 and halts there")]
+    assert judge("O1000\n" + sound, load_printer()).broken_off.startswith("line 1: cannot read 'O1000'")
+
+
+def test_an_e_is_told_once_and_by_its_cause() -> None:
+    said = [what for _, what in told(HEAD + "G90\nM3 S242\nG1 X60 E20 F300\nM5\nG1 Z10\n")]
+    assert said == ["GRBL has no E axis and halts at G1 E"]
+
+
+def test_f0_on_a_rapid_takes_the_speed_away() -> None:
+    assert told(RAPID.replace("G0 Z1.6", "G0 Z1.6 F0")) == []
+    assert (7, "no speed F was given yet") in told(RAPID.replace("G0 Z1.6", "G0 Z1.6 F0").replace("X60 F200", "X60"))
+    assert judge(RAPID.replace("X60 F200", "X60 F0"), load_printer("generic-grbl")).broken_off.startswith("line 7: F is 0")
+    assert judge(RAPID.replace("G0 Z1.6", "G0 Z1.6 F-1"), load_printer("generic-grbl")).broken_off.startswith("line 5: F is -1")
+
+
 CODES = ["G0", "G1", "G2", "G3", "G4", "G20", "G28", "G90", "G91", "G92", "M0", "M2", "M3", "M4", "M5", "M30", ""]
 WORDS = st.builds("{}{}".format, st.sampled_from("XYZIJRFSPAN"), st.sampled_from(["", "0", "1", "-1", "50", "1.5", "99999999", "-.0001"]))
 LINES = st.lists(st.one_of(st.sampled_from(CODES), WORDS), min_size=1, max_size=6).map(" ".join)

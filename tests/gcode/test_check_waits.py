@@ -31,6 +31,7 @@ def found(printer: Printer, place: str, line: str) -> list[str]:
         ("G4 P1 S2", "G4 waits 2 s within a stroke"),
         ("M109 S0", "M109 may wait for a temperature within a stroke"),
         ("M190 R0", "M190 may wait for a temperature within a stroke"),
+        ("M192 S30", "M192 may wait for a temperature within a stroke"),
     ],
 )
 def test_a_wait_within_a_stroke(printer: Printer, line: str, says: str) -> None:
@@ -75,6 +76,26 @@ def test_waiting_for_somebody_between_strokes_too(printer: Printer, line: str, s
         (what,) = found(printer, place, line)
         assert what == f"{says} in the midst of the ink, and the silicone sets meanwhile"
     assert not found(printer, "start", line)
+
+
+@pytest.mark.parametrize(
+    ("dwells", "told"),
+    [
+        ("G4 S600\nG4 S300", []),
+        ("G4 S600\nG4 S301", [(11, "G4 waits 301 s more, 901 s in all in the midst of the ink, where 900 is the most")]),
+        ("G4 S600\nG0 X120 F6000\nG4 S600\nG4 S600", [(12, "G4 waits 600 s more, 1200 s in all in the midst of the ink")]),  # told once
+        ("G4 S1000\nG4 S1000", [(10, "G4 waits 1000 s in the midst of the ink")]),
+    ],
+)
+def test_dwells_add_up_from_ink_to_ink(printer: Printer, dwells: str, told: list[tuple[int, str]]) -> None:
+    faults = check_text(STROKES.format(start="", within="", end="", lifted=dwells + "\n"), printer)
+    assert [f.line for f in faults] == [line for line, _ in told]
+    assert all(f.what.startswith(what) for f, (_, what) in zip(faults, told, strict=True))
+
+
+def test_dwells_of_two_gaps_do_not_add_up(printer: Printer) -> None:
+    more = "G0 X100 Y140 F6000\nG0 Z1.6 F300\nG1 X110 E40 F240\nG0 Z10\n"
+    assert not check_text(STROKES.format(start="G4 S600\n", within="", end="", lifted="G4 S600\n") + "G4 S600\n" + more, printer)
 
 
 def test_grbl_waits_in_seconds() -> None:
