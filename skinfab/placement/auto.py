@@ -44,8 +44,8 @@ class AutoOptions:
     sizes : tuple of float, mm
         Outer diameters of contact spirals, in any order.
     per_piece : int, optional
-        At most so many contact sensors on a piece; but a piece with more faces between creases gets one on each.
-        Without it `share.default_number` decides, and there are no more than the readout has channels.
+        So many contact sensors on each piece where they fit: with fewer than it has faces between creases, on its
+        largest faces. Without it `share.default_number` decides, and there are no more than the readout has channels.
     """
 
     kinds: tuple[str, ...] = _KINDS
@@ -87,8 +87,8 @@ def place(
     """Place sensors on every piece; the same input and seed give the same sensors.
 
     A finger (`finger.is_finger`) gets one strain sensor across its middle; then every piece gets contact
-    spirals, as large as fit: one on each face between creases, and more by area where there are fewer faces
-    than ``options.per_piece``. Creases count for nothing on a piece where otherwise nothing fits.
+    spirals, as large as fit: ``options.per_piece`` of them, the largest face between creases first and one on each
+    before any gets a second, which goes by area. Creases count for nothing on a piece where otherwise nothing fits.
 
     Parameters
     ----------
@@ -187,7 +187,7 @@ def _regions(space: Space, smallest: ContactSpiral) -> list[Region]:
 def _limits(spaces: Sequence[Space], regions: Sequence[Sequence[Region]], per_piece: int | None, channels: int) -> list[int]:
     """How many contact sensors each piece may have."""
     if per_piece is not None:
-        return [max(per_piece, len(parts)) for parts in regions]
+        return [per_piece] * len(regions)
     limits = [default_number(space.piece.area, len(parts)) if parts else 0 for space, parts in zip(spaces, regions, strict=True)]
     if sum(limits) > channels:
         # Pieces without room keep no channel from the others, and are told apart from those left out for want of one.
@@ -199,15 +199,24 @@ def _limits(spaces: Sequence[Space], regions: Sequence[Sequence[Region]], per_pi
 def _fill_piece(
     regions: Sequence[Region], spirals: Sequence[ContactSpiral], namer: Namer, limit: int, rng: np.random.Generator, *, beside: float
 ) -> int:
-    """Fill the parts of a piece, each with its share; what one has no room for goes to the others."""
-    placed, roomy = 0, []
+    """Fill the parts of a piece, each with its share; what one has no room for goes to those without any, then to the others."""
+    placed, roomy, without = 0, [], []
     for region, most in zip(regions, share([r.area for r in regions], most=limit), strict=True):
-        sensors = fill(region, spirals, int(most), rng, beside=beside) if most else []
+        if not most:
+            without.append(region)
+            continue
+        sensors = fill(region, spirals, int(most), rng, beside=beside)
         for sensor in sensors:
             namer.add(region.space, sensor)
         placed += len(sensors)
-        if most and len(sensors) == most:
+        if len(sensors) == most:
             roomy.append(region)
+    for region in sorted(without, key=lambda r: -r.area):
+        if placed < limit:
+            sensors = fill(region, spirals, 1, rng, beside=beside)
+            for sensor in sensors:
+                namer.add(region.space, sensor)
+            placed += len(sensors)
     large = [s for s in spirals if s.s >= beside]
     for region in roomy:
         if placed < limit and len(large):

@@ -5,7 +5,7 @@ A list of sensors, each at a place of one's own or wherever it fits, and a table
     [auto]                              # fill the rest; leave the table out for the listed sensors alone
     kinds = ["contact-spiral"]          # what to place: "contact-spiral", "strain-lines"; default both
     sizes = [22, 15]                    # outer diameters of contact spirals, mm; default the paper's
-    per_piece = 2                       # so many contact sensors on each piece where they fit; default by its area
+    per_piece = 2                       # so many contact sensors on each piece where they fit; default by its faces and area
 
     [[sensor]]
     kind = "contact-spiral"

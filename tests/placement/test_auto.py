@@ -40,6 +40,30 @@ def test_a_cube_gets_one_spiral_on_each_face(cube_net: Callable, side: float, s:
     assert [x.channel for x in sensors] == list(range(6)) and [x.id for x in sensors] == [f"C{k}" for k in range(1, 7)]
 
 
+@pytest.mark.parametrize("number", [1, 2, 5, 6])
+def test_fewer_than_there_are_faces_are_placed_where_asked_for(cube_net: Callable, number: int) -> None:
+    mesh, piece = cube_net(30.0)
+    options = AutoOptions(kinds=("contact-spiral",), sizes=(15,), per_piece=number)
+    sensors, warnings = place(mesh, [piece], material=MATERIAL, options=options)
+    validate(SimpleNamespace(pieces=(piece,), sensors=sensors), MATERIAL)
+    assert sizes(sensors) == [15] * number and not warnings
+    assert len({tuple(np.floor(x.path.bbox.mean(axis=0) / 30.0)) for x in sensors}) == number  # one a face
+
+
+def test_a_face_without_room_leaves_its_sensor_to_another(sheet: Callable) -> None:
+    # Two squares and a strip between them, folded up along both: the strip is the largest face, and a little too narrow.
+    h = 9.5
+    mesh, piece = sheet(24 * h, 4 * h, step=h, without=lambda c: (abs(c[:, 0] - 12 * h) < 8 * h) & (c[:, 1] > 2 * h))
+    V = mesh.V.copy()
+    V[:, 2] = np.maximum(np.abs(V[:, 0] - 12 * h) - 8 * h, 0)
+    folded = Mesh(V, mesh.F)
+    assert len(crease_lines(folded, piece)) == 4
+    sensors, warnings = place(folded, [piece], material=MATERIAL, options=AutoOptions(("contact-spiral",), (20,), per_piece=2))
+    assert sizes(sensors) == [20, 20] and not warnings
+    left, right = sorted(s.path.bbox.mean(axis=0)[0] for s in sensors)
+    assert left < 4 * h and right > 20 * h
+
+
 def test_a_rectangle_is_packed_with_the_largest_first(sheet: Callable) -> None:
     mesh, piece = sheet(60, 100)
     sensors, warnings = place(mesh, [piece], material=MATERIAL, options=AutoOptions(kinds=("contact-spiral",)))
