@@ -48,7 +48,12 @@ def worn(skin: Skin, profiles: Profiles) -> WornSkin:
     """The surfaces that wearing is reckoned on, the same as in the report; some tenths of a second for 85,000 triangles."""
     depth = profiles.material.depth
     return worn_skin(
-        skin.object, skin.mesh, flattened_at=skin.flattened_at, neutral_at=skin.neutral * depth, conductor_at=profiles.printer.heights.print
+        skin.object,
+        skin.mesh,
+        flattened_at=skin.flattened_at,
+        neutral_at=skin.neutral * depth,
+        conductor_at=profiles.printer.heights.print,
+        even=depth,
     )
 
 

@@ -1,14 +1,16 @@
 """How far a sensor is stretched by being worn, and what that does to its resistance.
 
 The flat skin is put back on the object by the inverse of the flattening. Along a path of unit direction t a triangle's
-map J from the plane to a surface stretches what lies there by |J t|. Two surfaces count, both parallel to the object's:
+map J from the plane to a surface stretches what lies there by |J t|. Two surfaces count:
 
 * the skin's neutral one, half-way through its thickness unless said otherwise: what is stretched there is the *membrane*
   part. It is nothing where that surface was flattened without distortion, and what a skin lacks in girth where the
   object's own surface was flattened;
 * the one the conductor lies in, as high over the skin's inner side as it was printed over the floor of the mould. What it
   is stretched beyond the neutral one is the *bending* part: normal curvature along the path times the distance of the
-  two surfaces, positive where a conductor outside the neutral surface goes round something convex.
+  two surfaces, positive where a conductor outside the neutral surface goes round something convex. Each side of a sharp
+  edge has an offset of its own, so that a flat face does not bend; what an edge bends is where a path crosses it
+  (`skinfab.placement.fold_strain`).
 
 The flat pieces are seen from outside the object, and are cast and printed that way up: the side on the mould's floor is
 the inner one, which lies on the object. A printed line keeps its volume, so that its resistance goes with (1 + e)^2.
@@ -23,10 +25,12 @@ from numpy.typing import NDArray
 
 from skinfab.errors import InputError
 from skinfab.flatten.locate import Locator
+from skinfab.mesh.creases import split_at_creases
 from skinfab.mesh.model import Mesh
-from skinfab.mesh.offset import offset_mesh
+from skinfab.mesh.offset import offset_mesh, outward_steps
 from skinfab.paths import Line, Path
 from skinfab.pieces import Piece
+from skinfab.placement.fold_strain import fold_lengthening
 
 Array = NDArray[np.float64]
 
@@ -82,13 +86,17 @@ class WornSkin:
     neutral : Mesh
         That is not stretched by bending.
     conductor : Mesh
-        In which the conductors lie; same faces and vertices.
+        In which the conductors lie; same faces, with vertices doubled along sharp edges, whose sides are apart there.
+    beyond : float, mm
+        How far outside the neutral surface that is.
     even : float, mm
-        Strain is averaged over this length of path: a skin bridges what is shorter than it is thick, as the bumps of a scan.
+        Strain is averaged over this length of path: a skin bridges what is shorter than it is thick, as the bumps of a scan. So is
+        bending before, by itself: a skin cannot follow an edge but bends over about as much path as it is thick.
     """
 
     neutral: Mesh
     conductor: Mesh
+    beyond: float = 0.0
     even: float = 0.0
 
 
@@ -131,19 +139,18 @@ def worn_skin(
     even : float, mm
         See `WornSkin`.
     """
-    farthest = max(neutral_at, conductor_at)
-    if flattened_at > 0:
+    if neutral_at == flattened_at:
+        neutral = flattened
+    elif flattened_at > 0:
         step = (flattened.V - object_mesh.V) / flattened_at
-    elif farthest > 0:
-        step = (offset_mesh(object_mesh, farthest, round_off=True).mesh.V - object_mesh.V) / farthest
+        neutral = Mesh(object_mesh.V + neutral_at * step, object_mesh.F, object_mesh.name)
     else:
-        return WornSkin(object_mesh, object_mesh, even)
-
-    def surface(distance: float) -> Mesh:
-        return Mesh(object_mesh.V + distance * step, object_mesh.F, object_mesh.name)
-
-    neutral = flattened if neutral_at == flattened_at else surface(neutral_at)
-    return WornSkin(neutral, neutral if conductor_at == neutral_at else surface(conductor_at), even)
+        neutral = offset_mesh(object_mesh, neutral_at, round_off=True).mesh
+    beyond = conductor_at - neutral_at
+    if beyond == 0:
+        return WornSkin(neutral, neutral, even=even)
+    apart = split_at_creases(neutral)
+    return WornSkin(neutral, Mesh(apart.V + beyond * outward_steps(apart), apart.F, apart.name), beyond=beyond, even=even)
 
 
 def wrap_strain(worn: WornSkin | Mesh, piece: Piece, path: Path, *, step: float = 0.25, locator: Locator | None = None) -> WrapStrain:
@@ -181,7 +188,7 @@ def strain_along(worn: WornSkin | Mesh, piece: Piece, path: Path, *, step: float
     """As `wrap_strain`, point by point and not averaged."""
     if isinstance(worn, Mesh):
         worn = WornSkin(worn, worn)
-    points, tangents, lengths = _samples(path, step)
+    points, tangents, lengths, ends = _samples(path, step)
     face = (locator or Locator(piece.UV, piece.F)).faces(points)
     if (face < 0).any():
         x, y = points[np.argmax(face < 0)]
@@ -193,8 +200,11 @@ def strain_along(worn: WornSkin | Mesh, piece: Piece, path: Path, *, step: float
         return length
 
     neutral = stretch(worn.neutral)
-    conductor = neutral if worn.conductor is worn.neutral else stretch(worn.conductor)
-    return StrainAlong(points, lengths, neutral - 1, conductor - neutral)
+    bending = np.zeros(len(points))
+    if worn.conductor is not worn.neutral:
+        bending = stretch(worn.conductor) - neutral + fold_lengthening(worn.neutral, piece, ends, worn.beyond) / lengths
+        bending = running_mean(bending, lengths, worn.even)
+    return StrainAlong(points, lengths, neutral - 1, bending)
 
 
 def summary(along: StrainAlong, *, even: float = 0.0) -> WrapStrain:
@@ -220,27 +230,30 @@ def summary(along: StrainAlong, *, even: float = 0.0) -> WrapStrain:
 
 
 def running_mean(values: Array, lengths: Array, window: float) -> Array:
-    """Mean of `values` (n,) over `window` mm about the middle of each piece of a path, as far as the path reaches.
+    """Mean of `values` (n,) over `window` mm about the middle of each piece of a path, which goes on beyond its ends as in a mirror.
+
+    So the mean of the whole stays what it was.
 
     Examples
     --------
     >>> running_mean(np.array([0.0, 3, 0, 0]), np.ones(4), 3.0).tolist()
-    [1.5, 1.0, 1.0, 0.0]
+    [1.0, 1.0, 1.0, 0.0]
     """
     if window <= 0:
         return values
     ends = np.concatenate([[0.0], np.cumsum(lengths)])
     total = np.concatenate([[0.0], np.cumsum(values * lengths)])
-    middle = (ends[1:] + ends[:-1]) / 2
-    low, high = np.maximum(middle - window / 2, 0.0), np.minimum(middle + window / 2, ends[-1])
-    mean: Array = (np.interp(high, ends, total) - np.interp(low, ends, total)) / (high - low)
+    middle, half = (ends[1:] + ends[:-1]) / 2, min(window / 2, ends[-1])
+    # The integral of what is even about either end.
+    ends = np.concatenate([-ends[:0:-1], ends, 2 * ends[-1] - ends[-2::-1]])
+    total = np.concatenate([-total[:0:-1], total, 2 * total[-1] - total[-2::-1]])
+    mean: Array = (np.interp(middle + half, ends, total) - np.interp(middle - half, ends, total)) / (2 * half)
     return mean
 
 
 def unflattening(mesh: Mesh, piece: Piece, faces: NDArray[np.int64]) -> Array:
     """Jacobian of each of the piece's triangles from the plane to the object, (len(faces), 3, 2)."""
-    corners = piece.F[faces]
-    space, flat = piece.V(mesh)[corners], piece.UV[corners]
+    space, flat = mesh.V[mesh.F[piece.faces[faces]]], piece.UV[piece.F[faces]]
     edges_space = np.stack([space[:, 1] - space[:, 0], space[:, 2] - space[:, 0]], axis=2)
     edges_flat = np.stack([flat[:, 1] - flat[:, 0], flat[:, 2] - flat[:, 0]], axis=2)
     return edges_space @ np.linalg.inv(edges_flat)
@@ -251,9 +264,9 @@ def _strain(values: Array, lengths: Array, even: float) -> Strain:
     return Strain(mean=float(values @ lengths / lengths.sum()), max=float(evened[np.argmax(np.abs(evened))]))
 
 
-def _samples(path: Path, step: float) -> tuple[Array, Array, Array]:
-    """Midpoints (n, 2) mm of short pieces of the path, its unit tangents there (n, 2), the pieces' lengths (n,) mm."""
-    points, tangents, lengths = [], [], []
+def _samples(path: Path, step: float) -> tuple[Array, Array, Array, Array]:
+    """Short pieces of the path: middles (n, 2) mm, unit tangents there (n, 2), lengths (n,) mm, starts and ends (n, 2, 2) mm."""
+    points, tangents, lengths, ends = [], [], [], []
     for s in path.segments:
         count = max(int(np.ceil(s.length / step)), 1)
         middle = (np.arange(count) + 0.5) / count
@@ -264,4 +277,6 @@ def _samples(path: Path, step: float) -> tuple[Array, Array, Array]:
             angle = s.start_angle + s.sweep * middle + np.sign(s.sweep) * np.pi / 2
             tangents.append(np.column_stack([np.cos(angle), np.sin(angle)]))
         lengths.append(np.full(count, s.length / count))
-    return np.concatenate(points), np.concatenate(tangents), np.concatenate(lengths)
+        between = s.point_at(np.arange(count + 1) / count)
+        ends.append(np.stack([between[:-1], between[1:]], axis=1))
+    return np.concatenate(points), np.concatenate(tangents), np.concatenate(lengths), np.concatenate(ends)

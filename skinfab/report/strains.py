@@ -47,7 +47,9 @@ def sensor_strains(skin: Skin, material: Material, *, conductor_mm: float | None
     """
     neutral = skin.neutral * material.depth
     conductor = neutral if conductor_mm is None else conductor_mm
-    worn = worn_skin(skin.object, skin.mesh, flattened_at=skin.flattened_at, neutral_at=neutral, conductor_at=conductor)
+    worn = worn_skin(
+        skin.object, skin.mesh, flattened_at=skin.flattened_at, neutral_at=neutral, conductor_at=conductor, even=material.depth
+    )
     used = {sensor.piece for sensor in skin.sensors}
     locators = {piece.id: Locator(piece.UV, piece.F) for piece in skin.pieces if piece.id in used}
     along = tuple(strain_along(worn, skin.piece(s.piece), s.path, locator=locators[s.piece]) for s in skin.sensors)

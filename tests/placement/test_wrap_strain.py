@@ -171,7 +171,9 @@ def test_surfaces_of_a_worn_skin_are_those_that_were_flattened() -> None:
     assert bare.neutral is body and bare.conductor is body
     # Flattened for another thickness: the neutral surface lies where the skin has it, on the same lines outward.
     worn = worn_skin(body, flat, flattened_at=1.25, neutral_at=2.5, conductor_at=0.0)
-    assert worn.neutral.V == pytest.approx(body.V + 2 * (flat.V - body.V)) and worn.conductor.V == pytest.approx(body.V)
+    assert worn.neutral.V == pytest.approx(body.V + 2 * (flat.V - body.V))
+    assert worn.beyond == -2.5
+    assert np.linalg.norm(worn.conductor.V, axis=1) == pytest.approx(8.0, rel=2e-3)  # a sphere of 320 triangles
 
 
 def test_a_bump_shorter_than_the_skin_is_thick_is_bridged(sheet: Callable) -> None:
@@ -192,6 +194,7 @@ def test_a_running_mean_keeps_what_is_constant() -> None:
     assert running_mean(np.full(50, 0.3), lengths, 2.5) == pytest.approx(0.3)
     values = rng.standard_normal(50)
     assert running_mean(values, lengths, 0.0) is values
+    assert running_mean(values, np.full(50, 0.25), 3.0).mean() == pytest.approx(values.mean())
     assert running_mean(values, lengths, 1e6) == pytest.approx(values @ lengths / lengths.sum())
 
 

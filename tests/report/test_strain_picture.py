@@ -66,14 +66,14 @@ def test_squeezed_is_blue(skin: Skin, tmp_path: Path) -> None:
 
 
 def test_conductors_lie_at_the_print_height(skin: Skin) -> None:
-    """Beyond the neutral surface by 0.35 mm, the sharp edge of the box lengthens a line across it by another 2 x 0.35."""
+    """Beyond the neutral surface by 0.35 mm, the sharp edge of the box lengthens a line across it by another 0.35 pi / 2."""
     material = load_material()
     facts = [
         strain_facts(skin.sensors[0], sensor_strains(skin, material, conductor_mm=z).along[0], material, even=material.depth)
         for z in (None, 1.6, 0.9)
     ]
     flat = skin.sensors[0].path.length
-    assert [f["bending"]["mean"] * flat for f in facts] == pytest.approx([0, 4 * 0.7, -4 * 0.7], abs=1e-9)
+    assert [f["bending"]["mean"] * flat for f in facts] == pytest.approx([0, 4 * 0.35 * np.pi / 2, -4 * 0.35 * np.pi / 2], abs=1e-9)
     assert [f["membrane"] for f in facts] == [facts[0]["membrane"]] * 3
     for f in facts:
         assert f["mean"] == pytest.approx(f["membrane"]["mean"] + f["bending"]["mean"], abs=1e-12)
