@@ -7,7 +7,7 @@ from collections.abc import Callable
 from gcode.emit import Arcs
 
 #: What may be chosen, in words; None: as the printer's profile says.
-ARCS: dict[Arcs | None, str] = {None: "as the printer draws", "native": "G2 and G3", "lines": "straight lines"}
+ARCS: dict[Arcs | None, str] = {None: "by the printer", "native": "G2 and G3", "lines": "straight lines"}
 
 
 class ArcsChoice:

@@ -13,7 +13,7 @@ from gcode.preview import ROLES
 from gcode.printer import Printer
 from gui.theme import Theme
 from gui.toolpath.marks import mark
-from gui.toolpath.timeline import DRAWN, Instant, Timeline, runs
+from gui.toolpath.timeline import DRAWN, ROLE_NAMES, Instant, Timeline, runs
 from gui.view2d.pen import Pen
 from gui.view2d.plane import Plane
 from gui.view2d.surface import Surface
@@ -85,6 +85,7 @@ class PathPicture(Surface):
         self._moved = False
         self._pixels_of: tuple[NDArray[np.uint32], NDArray[np.uint32]] | None = None  # done, to come
         self._marks = np.zeros((0, 0), dtype=np.int32)
+        self._reach: Float = np.zeros(0)
         self._done = -1
         super().__init__(master, still=self._draw_still, moving=self._draw_moving)
         bind = self.widget.bind
@@ -100,7 +101,7 @@ class PathPicture(Surface):
         """Show another path; the part of the bed that is seen stays while the piece does."""
         if scene is None or self.scene is None or scene.line.piece != self.scene.line.piece:
             self._fitted = True
-        self.scene, self.now = scene, now
+        self.scene, self.now, self._pixels_of = scene, now, None
         self.draw_idle()
 
     def restyle(self, theme: Theme) -> None:
@@ -149,7 +150,7 @@ class PathPicture(Surface):
         if first == last:
             return
         points = self.plane.to_px(line.parts[first:last].reshape(-1, 2))
-        spare = self._reach(line).max() + 2
+        spare = self._reach.max() + 2
         (x0, y0), (x1, y1) = points.min(axis=0) - spare, points.max(axis=0) + spare
         box = (float(x0), float(y0), float(x1), float(y1))
         left, top, right, bottom = self._pixels(box)
@@ -172,6 +173,7 @@ class PathPicture(Surface):
         theme, scene = self.theme, self.scene
         pen.box((0, 0, pen.width, pen.height), theme.view)
         if scene is None:
+            self._marks = np.zeros((0, 0), dtype=np.int32)
             return
         if self._fitted:
             self.plane = Plane.fitted(*scene.box, pen.width, pen.height, border=_BORDER_PX * pen.ratio)
@@ -223,16 +225,6 @@ class PathPicture(Surface):
         least = _LEAST_PX if role.startswith("print") else _THIN_PX
         return max(width * self.plane.scale if role.startswith("print") else 0.0, least * self.ratio)
 
-    def _reach(self, line: Timeline) -> Float:
-        """(k,) pixels from each drawn part to the edge of its line, and one more for its soft edge."""
-        widths = np.zeros(len(line))
-        for k, role in enumerate(DRAWN):
-            mine = line.role == k
-            for width in np.unique(line.width[mine]):
-                widths[mine & (line.width == width)] = self._width(role, float(width))
-        reach: Float = widths[line.part_step] / 2 + 1.0
-        return reach
-
     def _mark(self, line: Timeline) -> None:
         width, height = self.size
         if self._marks.shape != (height, width):
@@ -240,7 +232,12 @@ class PathPicture(Surface):
         px = self.plane.to_px(line.parts)
         px[..., 1] = height - px[..., 1]
         layers = np.empty((height, width), dtype=np.int8)
-        mark(px, self._reach(line), line.role[line.part_step], line.part_step, self._marks, layers)
+        # As they are drawn (`_width`), and one pixel more for the soft edge.
+        least = np.array([self._width(role, 0.0) for role in ROLE_NAMES])[line.role]
+        inked = np.isin(line.role, [DRAWN.index(role) for role in DRAWN if role.startswith("print")])
+        widths = np.where(inked, np.maximum(line.width * self.plane.scale, least), least)
+        self._reach = widths[line.part_step] / 2 + 1.0
+        mark(px, self._reach, line.role[line.part_step], line.part_step, self._marks, layers)
 
     def _draw_moving(self, pen: Pen) -> None:
         scene, now = self.scene, self.now

@@ -19,7 +19,7 @@ from gui.state.selection import Target
 from gui.state.session import Session
 from gui.theme import Theme
 from gui.toolpath.choice import ARCS, ArcsChoice
-from gui.toolpath.findings import problems_of
+from gui.toolpath.findings import SOURCE, problems_of
 from gui.toolpath.listing import Listing
 from gui.toolpath.picture import PathPicture, Scene, colours
 from gui.toolpath.settings_list import SettingsList
@@ -143,7 +143,7 @@ class ToolPathTab(ttk.Frame):
         self.choice.pack(side="left", padx=(4, 10))
         self.choice.bind("<<ComboboxSelected>>", lambda event: self.refresh())
         ttk.Label(top, text="Arcs").pack(side="left")
-        self.arcs = ttk.Combobox(top, values=list(ARCS.values()), state="readonly", width=19, name="arcs")
+        self.arcs = ttk.Combobox(top, values=list(ARCS.values()), state="readonly", width=13, name="arcs")
         self.arcs.set(ARCS[self._arcs.arcs])
         self.arcs.pack(side="left", padx=(4, 10))
         self.arcs.bind("<<ComboboxSelected>>", lambda event: self._arcs.choose(list(ARCS)[self.arcs.current()]))
@@ -161,7 +161,9 @@ class ToolPathTab(ttk.Frame):
         below.pack(side="bottom", fill="x")
         ttk.Label(self, textvariable=self.facts, name="facts", padding=(8, 0), justify="left").pack(side="bottom", anchor="w", fill="x")
         self.transport.pack(side="bottom", fill="x")
-        ttk.Label(self, textvariable=self.message, name="message", style="Faint.TLabel", padding=(8, 0)).pack(side="bottom", anchor="w")
+        said = ttk.Label(self, textvariable=self.message, name="message", style="Faint.TLabel", padding=(8, 0))
+        said.pack(side="bottom", anchor="w", fill="x")
+        said.bind("<Configure>", lambda event: said.configure(wraplength=event.width - 16))
         self.legend.pack(side="bottom", fill="x", padx=8)
         self.picture = PathPicture(self, self._theme, on_step=self.seek_step)
         self.picture.widget.pack(side="top", fill="both", expand=True)
@@ -215,11 +217,9 @@ class ToolPathTab(ttk.Frame):
             self._session.report("toolpath", [Problem(outcome.sentence, "toolpath", target=Target(piece=wanted[1]))])
             return
         planned: Planned = outcome.result
-        before = self.planned
         self.planned = planned
-        self._session.report("toolpath", [])
-        if before is None or before.program.text != planned.program.text:
-            self._session.report("toolpath check", [])  # what was found there is of another text
+        for source in ("toolpath", SOURCE):
+            self._session.report(source, [])  # what was found there is of another program
         self.message.set("; ".join(planned.program.warnings))
         program = planned.program
         outline = program.mould.piece.UV[program.mould.piece.topology.E[program.mould.piece.topology.is_boundary]]
@@ -263,8 +263,8 @@ class ToolPathTab(ttk.Frame):
         if self.planned is not planned:
             return
         self.message.set("")
-        found = [Problem(outcome.sentence, "toolpath check")] if outcome.sentence else problems_of(planned.program, outcome.result)
-        self._session.report("toolpath check", found)
+        found = [Problem(outcome.sentence, SOURCE)] if outcome.sentence else problems_of(planned.program, outcome.result)
+        self._session.report(SOURCE, found)
         faults = 0 if outcome.sentence else len(outcome.result.findings)
         if faults and outcome.result.findings[0].line:
             self.seek_line(outcome.result.findings[0].line)

@@ -91,6 +91,8 @@ class Timeline:
         The step that each belongs to, never falling.
     width : (n,) float, mm
         How wide it is drawn.
+    length : (n,) float, mm
+        Of its way, an arc as an arc.
     curves : dict
         The arcs among the steps.
     timing : Timing
@@ -110,6 +112,7 @@ class Timeline:
     parts: Float
     part_step: Int
     width: Float
+    length: Float
     curves: dict[int, Curve]
     timing: Timing
 
@@ -138,14 +141,13 @@ class Timeline:
     @cached_property
     def amounts(self) -> dict[str, tuple[float, int]]:
         """Of each role that is drawn: the length of its ways, mm, and how often it is done at standstill."""
-        lengths = np.linalg.norm(self.parts[:, 1] - self.parts[:, 0], axis=1)
-        roles = self.role[self.part_step]
-        found = {}
-        for k, name in enumerate(DRAWN):
-            mine = roles == k
-            if mine.any():
-                found[name] = float(lengths[mine].sum()), int((lengths[mine] == 0).sum())
-        return found
+        drawn = np.unique(self.part_step)
+        roles, lengths = self.role[drawn], self.length[drawn]
+        return {
+            name: (float(lengths[mine].sum()), int((lengths[mine] == 0).sum()))
+            for k, name in enumerate(DRAWN)
+            if (mine := roles == k).any()
+        }
 
     def step_at(self, time: float) -> int:
         """The step that is being done at a time; the last one at and after the end."""
@@ -262,6 +264,7 @@ class _Table:
         self.patterns = {"": 0}
         self.parts: list[Float] = []
         self.owners: list[tuple[int, int]] = []
+        self.lengths: dict[int, float] = {}
         self.curves: dict[int, Curve] = {}
 
     def add(
@@ -281,6 +284,7 @@ class _Table:
             points = np.array([stroke.at, stroke.at] if shape is None else [shape.start, shape.end])
         self.parts.append(np.stack([points[:-1], points[1:]], axis=1))
         self.owners.append((k, len(points) - 1))
+        self.lengths[k] = 0.0 if shape is None else shape.length
 
     def made(self, planned: PieceProgram, end: tuple[float, float, float]) -> Timeline:
         index, line, role, width, ink, speed, pattern = (np.array(column) for column in zip(*self.rows, strict=True))
@@ -299,6 +303,7 @@ class _Table:
             parts=np.concatenate(self.parts) if self.parts else np.zeros((0, 2, 2)),
             part_step=np.repeat(owners[:, 0], owners[:, 1]),
             width=width,
+            length=np.array([self.lengths.get(k, 0.0) for k in range(len(index))]),
             curves=self.curves,
             timing=timing(planned.program, planned.printer),
         )

@@ -58,7 +58,7 @@ class Transport(ttk.Frame):
             widget.grid(row=0, column=k, sticky="ew", padx=2)
         self.columnconfigure(2, weight=1)
         self.bind_keys(self.scale)
-        self.bind("<Destroy>", lambda event: self.stop())
+        self.bind("<Destroy>", lambda event: self._cancel())  # its buttons are gone by then
         self.show(None)
 
     def bind_keys(self, widget: tk.Misc) -> None:
@@ -125,9 +125,13 @@ class Transport(ttk.Frame):
     def stop(self) -> None:
         """Play no more."""
         if self.playing is not None:
+            self._cancel()
+            self.play.configure(text="▶")
+
+    def _cancel(self) -> None:
+        if self.playing is not None:
             self.after_cancel(self.playing)
             self.playing = None
-            self.play.configure(text="▶")
 
     def _frame(self) -> None:
         now = time.monotonic()
