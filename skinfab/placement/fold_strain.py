@@ -39,7 +39,7 @@ def fold_lengthening(mesh: Mesh, piece: Piece, ends: Array, distance: float) -> 
     lines, turn = _folds(mesh, piece)
     if not len(lines) or distance == 0:
         return gained
-    which, fold = shapely.STRtree(np.atleast_1d(shapely.linestrings(lines))).query(shapely.linestrings(ends))
+    which, fold = shapely.STRtree([shapely.LineString(each) for each in lines]).query(shapely.linestrings(ends))
     (p, q), (a, b) = np.moveaxis(ends[which], 1, 0), np.moveaxis(lines[fold], 1, 0)
     r, s = q - p, b - a
     # By signs alone, which come out the same for all that share a point: a path through the end of an edge, or of a piece of it,
