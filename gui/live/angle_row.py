@@ -112,9 +112,10 @@ class AngleRow(ttk.Frame):
             return
         angle = math.nan if reading is None or silent else reading.angle
         words = "no reading" if reading is None or silent else reading.fault
-        if reading is not None and reading.outside and not words:
-            words = f"outside {made.low:.0f} to {made.high:.0f}\N{DEGREE SIGN}"
-        self.dial.show(angle, words, made.low, made.high)
+        doubtful = reading is not None and reading.outside and not words
+        if doubtful:
+            words = "beyond what it was calibrated for"
+        self.dial.show(angle, words, made.low, made.high, doubtful=doubtful)
 
     def _choose(self) -> None:
         path = self._ask()
@@ -134,8 +135,6 @@ class AngleRow(ttk.Frame):
         simulated = ", from a simulated log" if made.made_from.get("simulated") else ""
         error = made.error.get("held_out_rms_deg")
         rms = f", {error:.1f}\N{DEGREE SIGN} rms" if error is not None and math.isfinite(error) else ""
-        self._words.configure(
-            text=f"{made.signal} to {made.angle}, {made.low:.0f} to {made.high:.0f}\N{DEGREE SIGN}{rms}: {made.model.name} of {made.date}"
-            f"{simulated}"
-        )
+        fitted = f"{made.low:.0f} to {made.high:.0f}\N{DEGREE SIGN}{rms}"
+        self._words.configure(text=f"{made.signal} to {made.angle}, {fitted}: {made.model.name} of {made.date[:10]}{simulated}")
         self.show(None, silent=True)

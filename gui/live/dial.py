@@ -26,18 +26,25 @@ class Dial(tk.Canvas):
         self._dpi = master.winfo_fpixels("1i") / 96
         super().__init__(master, name="dial", width=self._px(_WIDTH), height=self._px(_HEIGHT), highlightthickness=0, borderwidth=0)
         self._theme = theme
-        self._shown = math.nan, "", 0.0, 0.0
+        self._shown = math.nan, "", 0.0, 0.0, False
         self.restyle(theme)
 
     def restyle(self, theme: Theme) -> None:
         """Other colours."""
         self._theme = theme
         self.configure(background=theme.panel)
-        self.show(*self._shown)
+        self._draw()
 
-    def show(self, angle: float, words: str, low: float, high: float) -> None:
+    def show(self, angle: float, words: str, low: float, high: float, *, doubtful: bool = False) -> None:
         """Show an angle, NaN for none, in deg, on a dial whose range from `low` to `high` is known; `words` stand below it."""
-        self._shown = angle, words, low, high
+        shown = angle, words, low, high, doubtful
+        if shown == self._shown:
+            return
+        self._shown = shown
+        self._draw()
+
+    def _draw(self) -> None:
+        angle, words, low, high, doubtful = self._shown
         theme, r = self._theme, self._px(_RADIUS)
         x, y = self._px(_WIDTH) / 2, self._px(_RADIUS) + self._px(6)
         box = (x - r, y - r, x + r, y + r)
@@ -47,14 +54,15 @@ class Dial(tk.Canvas):
         if high > low:
             first, last = _turn(low), _turn(high)
             self.create_arc(*box, start=last, extent=first - last, style="arc", outline=theme.accent, width=wide)
-        inside = not math.isnan(angle) and low <= angle <= high
-        colour = theme.text if inside else theme.warning
+        colour = theme.warning if doubtful else theme.text
         if not math.isnan(angle):
             turn = math.radians(_turn(min(max(angle, _LEAST), _MOST)))
-            self.create_line(x, y, x + 0.86 * r * math.cos(turn), y - 0.86 * r * math.sin(turn), fill=theme.select, width=self._px(3))
+            near, far = 0.62 * r, 1.06 * r  # beside the number, across the dial
+            ends = (x + near * math.cos(turn), y - near * math.sin(turn), x + far * math.cos(turn), y - far * math.sin(turn))
+            self.create_line(*ends, fill=theme.select, width=self._px(4))
         number = "-" if math.isnan(angle) else f"{angle:.1f}\N{DEGREE SIGN}"
-        self.create_text(x, y - r * 0.32, text=number, fill=colour, font=("TkDefaultFont", -self._px(20), "bold"))
-        self.create_text(x, y + self._px(13), text=words, fill=theme.faint, font=("TkDefaultFont", -self._px(11)))
+        self.create_text(x, y - r * 0.2, text=number, fill=colour, font=("TkDefaultFont", -self._px(20), "bold"))
+        self.create_text(x, y + self._px(13), text=words, fill=colour if doubtful else theme.faint, font=("TkDefaultFont", -self._px(11)))
 
     def _px(self, pixels: float) -> int:
         return round(pixels * self._dpi)

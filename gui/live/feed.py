@@ -138,6 +138,8 @@ class Feed:
         self._pending: deque[tuple[float, FloatArray]] = deque(maxlen=WAITING)
         self._orders: queue.SimpleQueue[Callable[[Watch], None]] = queue.SimpleQueue()
         self._contacts: list[Contact] = []
+        #: What keeps contacts from being seen, in words.
+        self.contacts = ""
         self._touched, self._reading = dict[str, float](), cast("Reading | None", None)
         self._anew, self._newest, self._came = False, cast("Frame | None", None), -math.inf
         self._given: deque[tuple[float, int]] = deque()
@@ -264,6 +266,7 @@ class Feed:
                 if isinstance(source, Player) and (to := source.jumped()) is not None:
                     self._jump(source, to)
                 asked = time.monotonic()
+                self.contacts = watch.blind
                 frame = source.read(WAIT_S)
                 if frame is not None:
                     self._take(frame)

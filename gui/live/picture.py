@@ -61,7 +61,7 @@ def strips(
     shade = _cover(spans, low, high, height, width_px)
     c, _, w = shade.shape
     palette = np.stack([_palette(ink) for ink in inks])
-    picture: NDArray[np.uint32] = palette.ravel()[shade + (np.arange(c, dtype=np.int32) * _SHADES)[:, None, None]]
+    picture = np.take(palette.ravel(), shade + (np.arange(c) * _SHADES)[:, None, None], mode="clip")
     line = _packed(np.array([rgb(grid_colour)]))[0]
     for column in grid:
         free = shade[:, :, column] == 0
@@ -70,7 +70,7 @@ def strips(
     return picture.reshape(c * height, w)
 
 
-def _cover(spans: Spans, low: FloatArray, high: FloatArray, height: int, width_px: float) -> NDArray[np.int32]:
+def _cover(spans: Spans, low: FloatArray, high: FloatArray, height: int, width_px: float) -> NDArray[np.intp]:
     """How much of each pixel the curves cover, (c, height, w) from 0 to `_SHADES` - 1."""
     room, half = height - 1 - 2 * width_px, width_px / 2
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -87,7 +87,7 @@ def _cover(spans: Spans, low: FloatArray, high: FloatArray, height: int, width_p
     np.clip(part, 0, 1, out=part)
     part *= _SHADES - 1
     part += 0.5
-    return part.astype(np.int32)
+    return part.astype(np.intp)
 
 
 def _palette(ink: Ink) -> NDArray[np.uint32]:

@@ -22,7 +22,7 @@ from gui.theme import Theme, rgb
 from skinfab.readout.frame import Frame, Stream
 
 #: Pixels at 96 dots an inch: of names, of values, of times below; the least height of a strip, and of the angle's.
-_LEFT, _RIGHT, _BELOW, _LEAST, _ANGLE = 96, 92, 20, 11, 72
+_LEFT, _RIGHT, _BELOW, _LEAST, _ANGLE = 96, 116, 20, 11, 72
 #: Values are written anew so often, s: digits that change faster cannot be read.
 _WORDS_S = 0.2
 #: A line is broken where frames are farther apart than this, s, or so many of the stream's steps.
@@ -273,9 +273,9 @@ class Plots(ttk.Frame):
         if now.silent:
             return value, theme.faint
         if frame.saturated[k]:
-            return f"{value}, at its end", theme.error
+            return "at its end", theme.error
         if channel.name in now.touched:
-            return f"{100 * now.touched[channel.name]:+.0f} % touched", theme.select
+            return f"touched, {100 * now.touched[channel.name]:+.0f} %", theme.select
         return value, theme.text
 
     # What clicks do

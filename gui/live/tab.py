@@ -12,7 +12,7 @@ from tkinter import ttk
 from calibration.strain.document import SensorCalibration
 from gui.live.angle_row import AngleRow
 from gui.live.channels import label, sensors_of, watched
-from gui.live.choices import Choice, LogChoice
+from gui.live.choices import Choice, LogChoice, PortChoice
 from gui.live.connect import ConnectRow
 from gui.live.feed import Feed, Status
 from gui.live.lights import Lights, lights_of
@@ -238,16 +238,9 @@ class LiveTab(ttk.Frame):
         self.angle.show(news.reading, silent=quiet)
 
     def _say(self, feed: Feed, status: Status) -> None:
-        words = words_of(feed.choice.name, status, standing=self._standing(feed))
-        watch, more = feed.watch, ""
-        if watch is not None and status.state == "running":
-            if watch.fault:
-                more = f"; no contacts: {watch.fault}"
-            elif watch.frozen:
-                more = f"; frozen: {', '.join(watch.frozen[:4])}"
-            elif watch.waiting:
-                more = "; leave the object alone for 3 s: contacts are watched for once it was at rest"
-        self.status.configure(text=words.text + more, style=f"{words.kind.title()}.TLabel")
+        opening = "" if isinstance(feed.choice, PortChoice) else f"opening {feed.choice.name}"
+        words = words_of(feed.choice.name, status, standing=self._standing(feed), contacts=feed.contacts, opening=opening)
+        self.status.configure(text=words.text, style=f"{words.kind.title()}.TLabel")
         self.lights.say(self._note(feed, status))
         if feed.records:
             self.row.recording(self._record_name, feed.recording)
@@ -286,7 +279,7 @@ class LiveTab(ttk.Frame):
 
     def _note(self, feed: Feed, status: Status) -> str:
         """What has to be said beside lights that are not of now."""
-        if self._session.skin is None or status.stream is None or status.state != "running":
+        if not any(self._sensors) or status.stream is None or status.state != "running":
             return ""
         parts = ["simulated"] * status.stream.simulated
         if isinstance(feed.choice, LogChoice):

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calibration.contact.detector import Contact, ContactDetector
+from calibration.contact.rest import STILL_S
 from calibration.strain.document import SensorCalibration
 from calibration.strain.reading import AngleReader, Reading
 from gui.live.player import part
@@ -77,6 +78,19 @@ class Watch:
     def frozen(self) -> tuple[str, ...]:
         """Channels that have frozen."""
         return () if self.detector is None else self.detector.frozen
+
+    @property
+    def blind(self) -> str:
+        """What keeps contacts from being seen now, in words; empty where nothing does."""
+        if self.fault:
+            return f"no contacts: {self.fault}"
+        if not self._contact:
+            return ""
+        if not self.rate_hz:
+            return f"counting frames for {COUNTED_S:g} s"
+        if waiting := self.waiting:
+            return f"contacts not seen yet on {_some(waiting)}, which have not been at rest for {STILL_S:g} s"
+        return f"frozen: {_some(self.frozen)}" if self.frozen else ""
 
     def calibrate(self, calibration: SensorCalibration | None, channel: str = "") -> None:
         """Give out angles from now on, or none any more.
@@ -152,6 +166,16 @@ class Watch:
             self.detector.run(Recording.of_frames(self.stream, self._counted[:-1]))
         self._counted = []
         return True
+
+
+def _some(names: Sequence[str]) -> str:
+    """
+    Examples
+    --------
+    >>> _some(["S1", "S2"]), _some([f"S{k}" for k in range(9)])
+    ('S1, S2', 'S0, S1, S2 and 6 more')
+    """
+    return ", ".join(names) if len(names) <= 4 else f"{', '.join(names[:3])} and {len(names) - 3} more"
 
 
 def require_readable(calibration: SensorCalibration, stream: Stream, channel: str = "") -> None:

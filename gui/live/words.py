@@ -23,10 +23,10 @@ def silent(status: Status, *, paused: bool = False) -> bool:
     """Is what is shown no more what is?"""
     rate = status.stream.rate_hz if status.stream is not None else 0.0
     limit = max(SILENT_S, SILENT_FRAMES / rate if rate else 0.0)
-    return status.state != "running" or (not paused and status.age_s > limit)
+    return status.state != "running" or not math.isnan(status.gone_s) or (not paused and status.age_s > limit)
 
 
-def words_of(name: str, status: Status, *, standing: str = "") -> Words:
+def words_of(name: str, status: Status, *, standing: str = "", contacts: str = "", opening: str = "") -> Words:
     """What to say of a source.
 
     Parameters
@@ -36,6 +36,10 @@ def words_of(name: str, status: Status, *, standing: str = "") -> Words:
     status : Status
     standing : str
         Why a log gives nothing now, such as "paused"; empty where it plays.
+    contacts : str
+        What keeps contacts from being seen; empty where nothing does.
+    opening : str
+        What is being done while it is opened.
 
     Examples
     --------
@@ -46,7 +50,7 @@ def words_of(name: str, status: Status, *, standing: str = "") -> Words:
     'waiting for /dev/ttyACM0 to say what it sends'
     """
     if status.state == "opening":
-        return Words(f"waiting for {name} to say what it sends", "warning")
+        return Words(opening or f"waiting for {name} to say what it sends", "warning")
     if status.stream is None:
         return Words(status.sentence or "not connected", "error" if status.sentence else "warning")
     parts = [_stream(status, standing), *_counts(status)]
@@ -58,7 +62,10 @@ def words_of(name: str, status: Status, *, standing: str = "") -> Words:
     if silent(status, paused=bool(standing)):
         since = "no frame has come yet" if math.isinf(status.age_s) else f"stale: no frame for {status.age_s:.1f} s"
         return Words("; ".join([f"{name}, {since}; look at the device", *parts[1:]]), "error")
-    return Words("; ".join(parts), "warning" if len(parts) > 1 else "good")
+    kind = "warning" if len(parts) > 1 else "good"
+    if contacts and not standing:
+        parts.append(contacts)
+    return Words("; ".join(parts), kind)
 
 
 def _stream(status: Status, standing: str) -> str:
