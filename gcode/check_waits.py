@@ -65,7 +65,8 @@ def wait_findings(judged: Trace, printer: Printer) -> Iterator[Finding]:
                 told = True
                 waits = f"G4 waits {seconds:g} s" if seconds == waited else f"G4 waits {seconds:g} s more, {waited:g} s in all"
                 what = f"{waits} in the midst of the ink, where {most:g} is the most, and the silicone sets meanwhile"
-                yield Finding(command.line, what, "shorten it, or take it out", ways[after].pattern)
+                remedy = "shorten it, or take it out; P is seconds" if printer.spindle else "shorten it, or take it out"
+                yield Finding(command.line, what, remedy, ways[after].pattern)
                 continue
         if not (after_ink[after - 1] and before_ink[after]):
             continue

@@ -104,6 +104,8 @@ def test_grbl_waits_in_seconds() -> None:
     for wait in ("G4 P0.5\n", "M5\nG4 P0.5\nM3\n"):  # with the pump on, and at rest
         (fault,) = [f for f in check_text(text.format("", wait), grbl) if "within a stroke" in f.what]
         assert fault.what == "G4 waits 0.5 s within a stroke, and ink gathers where the nozzle stands"
+    (fault,) = [f for f in check_text(text.format("", "M5\nG4 P1000\nM3\n"), grbl) if "midst" in f.what]
+    assert fault.remedy == "shorten it, or take it out; P is seconds"
     # A pump that is let come to speed before the bead is no wait within it.
     assert not [f for f in check_text(text.format("G4 P0.5\n", ""), grbl) if "within a stroke" in f.what]
 
