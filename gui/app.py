@@ -51,8 +51,9 @@ from gui.view2d.view import View2D
 from gui.view3d.view import View3D
 from skinfab.errors import InputError
 
-#: The size a window begins with, px: fits the smallest screen it is made for, less the frame of a window manager.
-FIRST_SIZE = "1280x760"
+#: The size a window begins with, px: with its menu bar (30 px) and the frame of a window manager it fits the smallest screen it is made
+#: for, 1280 x 800; a larger one begins with the status bar below the screen.
+FIRST_SIZE = "1276x734"
 LEAST_SIZE = (960, 600)
 
 #: What buttons and menus may depend on.
@@ -104,12 +105,16 @@ class App:
         self._log_file = state / "gui.log"
         self._closed = False
         self._refresh: str | None = None
+        self._behind: str | None = None
+        #: Ended because the system wanted it.
+        self.interrupted = False
         self._autosave_fault = ""
         self._watch = root.after(_WATCH_MS, self._watch_autosave)
         root.report_callback_exception = self._fault
         self._build(remembered)
         root.protocol("WM_DELETE_WINDOW", self.close)
         accept_files(root, self.files.open_path)
+        self.actions.refresh()
         self._first = root.after(50, self._begin, path)
 
     def close(self) -> None:
@@ -124,8 +129,10 @@ class App:
 
     def _end(self, *, keep_copy: bool) -> None:
         self._closed = True
-        for timer in (self._watch, self._first):
-            self.root.after_cancel(timer)
+        for timer in (self._watch, self._first, self._refresh, self._behind):
+            if timer:
+                self.root.after_cancel(timer)
+        self._refresh = self._behind = "none from now on"
         self.live.close()
         self.runner.close()
         self.background.close()
@@ -147,7 +154,7 @@ class App:
 
     def _build(self, remembered: Remembered) -> None:
         root, session = self.root, self.session
-        self.status = StatusBar(root, session, cancel=self.runner.cancel, describe=lambda: describe(session, self.derived))
+        self.status = StatusBar(root, session, cancel=self._cancel, describe=lambda: describe(session, self.derived))
         self.status.pack(side="bottom", fill="x")
         self.seams = SeamCommands(self.desk)
         body = ttk.Panedwindow(root, orient="vertical", name="body")
@@ -195,7 +202,6 @@ class App:
         side = ttk.Frame(master, name="side", width=int(_SIDE * self.root.winfo_fpixels("1i") / 96))
         side.pack_propagate(False)
         PiecesPanel(side, session, self.derived).pack(fill="x")
-        SensorsPanel(side, session, self.shelf).pack(fill="both", expand=True)
         forms = ttk.Notebook(side, name="forms")
         properties = PropertiesPanel(
             forms, session, self.derived, self.shelf, self.background, complain=complain, make_thick=self.seams.make_thick
@@ -203,7 +209,8 @@ class App:
         self.new_sensor = NewSensorPanel(forms, session, self.shelf, self.theme, complain=complain, place=lambda: session.take_up("add"))
         forms.add(properties, text="Properties")
         forms.add(self.new_sensor, text="New sensor")
-        forms.pack(fill="x")
+        forms.pack(side="bottom", fill="x")
+        SensorsPanel(side, session, self.shelf).pack(fill="both", expand=True)  # last of all: where room is scarce, the list is scrolled
         # What is taken in hand or selected is what one wants to see.
         session.listen("tool", lambda: forms.select(self.new_sensor if session.tool == "add" else properties))
         session.listen("selection", lambda: forms.select(properties) if session.tool != "add" else None)
@@ -284,12 +291,25 @@ class App:
 
     def _progress(self, step: Step | None) -> None:
         self.status.progress(step)
+        if step is None and self._behind is None:
+            self._behind = self.root.after_idle(self._catch_up)
+
+    def _catch_up(self) -> None:
+        self._behind = None
+        if self.runner.job is None:
+            self.seams.catch_up()
+
+    def _cancel(self) -> None:
+        self.seams.give_up()
+        if self.runner.cancel():
+            self.status.say("Stopped." + (" F6 flattens the pieces." if self.session.skin is not None else ""))
 
     def _fault(self, kind: type[BaseException], fault: BaseException, trace: TracebackType | None) -> None:
         """What a callback raised: a sentence, never a traceback or a dead window."""
         if isinstance(fault, KeyboardInterrupt):
+            self.interrupted = True
             self.abandon()
-            raise fault  # the loop ends with it
+            return
         sentence, ours = sentence_of(fault)
         if ours:
             self._log("".join(traceback.format_exception(kind, fault, trace)))
@@ -325,5 +345,7 @@ def run(path: Path | None = None) -> None:
     try:
         root.mainloop()
     except KeyboardInterrupt:
+        app.interrupted = True
         app.abandon()
-        raise
+    if app.interrupted:
+        raise KeyboardInterrupt

@@ -35,6 +35,7 @@ class SeamCommands:
     def __init__(self, desk: Desk) -> None:
         self._desk = desk
         self._settled: list[tuple[NDArray[np.int64], list[Problem]]] = []
+        self._behind = False
         self.method = "auto"
         self.cones: int | None = None
         desk.session.listen("skin", self._follow)
@@ -44,7 +45,7 @@ class SeamCommands:
         has = self._desk.has_skin
         return [
             Action("auto_cut", "Cut automatically", "Seams", self.auto_cut, "F5", has, "Few good pieces; locked seams stay.", True),
-            Action("flatten", "Flatten all pieces anew", "Seams", self.flatten_anew, "F6", self._desk.has_pieces),
+            Action("flatten", "Flatten all pieces anew", "Seams", self.flatten_anew, "F6", self._can_flatten),
             Action("clear_seams", "Glue all seams that are not locked", "Seams", self.clear, "", has),
             Action("clear_marks", "Forget locks, bans and paint", "Seams", self.clear_marks, "", self._has_marks),
         ]
@@ -124,6 +125,19 @@ class SeamCommands:
         if self._desk.has_pieces():
             self.flatten_anew()
 
+    def catch_up(self) -> None:
+        """Flatten after all, where other work took the place of that and is done now."""
+        if self._behind:
+            self._follow()
+
+    def give_up(self) -> None:
+        """The pieces stay behind the seams until the next change, or until they are asked for: the user stopped it, or it failed."""
+        self._behind = False
+
+    def _can_flatten(self) -> bool:
+        skin = self._desk.session.skin
+        return skin is not None and (bool(skin.pieces) or len(skin.seams) > 0)
+
     def _follow(self) -> None:
         """Open the object along its seams as they are now, unless the pieces are those already."""
         skin = self._desk.session.skin
@@ -133,13 +147,15 @@ class SeamCommands:
             if skin.seams is seams:
                 self._desk.session.report("flatten", said)  # after undo, what was said then
                 return
-        take, method, cones = self._take(skin, ""), self.method, self._cones()
-        self._desk.work("flattening", tasks.reopen, take, source="flatten", skin=skin, method=method, cones=cones, anew=[])
+        asked = {"skin": skin, "method": self.method, "cones": self._cones(), "anew": []}
+        self._behind = True
+        self._desk.work("flattening", tasks.reopen, self._take(skin, ""), source="flatten", failed=self.give_up, **asked)
 
     def _take(self, asked: Skin, label: str) -> Callable[[Reopened], None]:
         """What to do with the result for `asked`: a step of that name, or what completes the last step."""
 
         def take(result: Reopened) -> None:
+            self._behind = False
             session = self._desk.session
             if session.skin is None or session.skin.mesh is not asked.mesh:
                 return  # something else was opened meanwhile
