@@ -5,7 +5,7 @@ from __future__ import annotations
 import errno
 import os
 import secrets
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -73,6 +73,48 @@ def require_place(target: str | Path) -> None:
         raise InputError(f"cannot write {target}: it is a folder; name a file in it")
     if not target.parent.is_dir():
         raise InputError(f"cannot write {target}: its folder does not exist; create it first")
+
+
+def require_apart(folder: str | Path, names: Sequence[str], inputs: Sequence[str | Path], *, perhaps: Sequence[str] = ()) -> None:
+    """Refuse a folder in which results would replace what they are made from, or what somebody else put there.
+
+    A run leaves all of its files or none; where some lie there and others do not, no earlier run left them.
+
+    Parameters
+    ----------
+    folder : path
+        Where the results go; it need not exist.
+    names : sequence of str
+        The files that every run leaves.
+    inputs : sequence of path
+        Files or folders that are read.
+    perhaps : sequence of str
+        Files that some runs leave and others remove.
+
+    Raises
+    ------
+    InputError
+        One of the files is an input, lies in one, or is of no earlier run.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> folder = Path(tempfile.mkdtemp())
+    >>> _ = (folder / "samples.csv").write_text("t,U")
+    >>> require_apart(folder, ["samples.csv", "result.json"], [folder / "samples.csv"])
+    Traceback (most recent call last):
+        ...
+    skinfab.errors.InputError: ...samples.csv is read and would be replaced by the result of that name; give another -o
+    """
+    folder = Path(folder)
+    there = [folder / name for name in names if os.path.lexists(folder / name)]
+    for target in (*there, *(folder / name for name in perhaps)):
+        for source in map(Path, inputs):
+            if source.exists() and target.exists() and (target.samefile(source) or source.resolve() in target.resolve().parents):
+                raise InputError(f"{target} is read and would be replaced by the result of that name; give another -o")
+    if there and len(there) < len(names):
+        missing = next(name for name in names if folder / name not in there)
+        raise InputError(f"{there[0]} is there already and is of no earlier run, which would have left {missing} too; give another -o")
 
 
 def explain_os_error(fault: OSError, target: str | Path) -> str:

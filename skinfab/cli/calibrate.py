@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from calibration.strain.prepare import Prepared
     from skinfab.readout.table import Table
 
+#: What a run leaves.
+FILES = ("calibration.json", "calibration.png", "result.json", "samples.csv")
 #: Must be the names of `calibration.strain.models.MODELS`, which is not imported for a help text.
 NAMES = ("auto", "poly", "branches", "play", "lag")
 
@@ -70,12 +72,14 @@ def run(args: argparse.Namespace) -> int:
     from calibration.strain.calibrate import calibrate
     from calibration.strain.clock import clock_facts, clock_line
     from calibration.strain.prepare import prepare
+    from skinfab.files import require_apart
     from skinfab.readout.logs.log import read_log_table
     from skinfab.staging import staged_folder
 
     limits = tuple(args.limits) if args.limits else None
     table, said = read_log_table(args.log)
     _require_own(args.output, table)
+    require_apart(args.output, FILES, [args.log, *args.new_task])
     log = prepare(table, signal=args.signal, angle=args.angle, limits=limits)
     found = calibrate(log, model=args.model, degree=args.degree)
     clock, clock_notes = clock_facts(log)
@@ -93,7 +97,7 @@ def run(args: argparse.Namespace) -> int:
         print(line)
     if clock:
         print(clock_line(clock))
-    print(f"{args.output}: calibration.json, calibration.png, result.json, samples.csv")
+    print(f"{args.output}: {', '.join(FILES)}")
     return 0
 
 

@@ -6,7 +6,7 @@ import argparse
 import json
 import math
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -63,6 +63,9 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         action="append",
         help="watch this channel; may be given again (default: contact sensors, or all there are)",
     )
+    p.add_argument(
+        "--wiring", metavar="FILE", type=Path, help="of logs: wiring.csv of the skin, or its .skin; channels get their sensors' names"
+    )
     p.add_argument("--object", choices=(*OBJECTS, "all"), help=f"of the {SIMULATOR} (default: all)")
     p.add_argument("--trials", metavar="N", type=steps.seed, help=f"of the {SIMULATOR}, per object (default: 5)")
     p.add_argument("--seed", type=steps.seed, help=f"of the {SIMULATOR} (default: 0)")
@@ -75,7 +78,11 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 def run(args: argparse.Namespace) -> int:
     """Find contacts, write them down, and say what was found."""
+    from skinfab.cli.contact_files import FILES, TRUTH, write_files
+    from skinfab.files import require_apart
+
     kind = _kind(args)
+    require_apart(args.output, FILES, args.logs if kind == "log" else (), perhaps=(TRUTH,))
     scores: dict[str, dict[str, list[Score]]] = {}
     if kind == SIMULATOR:
         sessions, scores = _simulated(args)
@@ -83,7 +90,6 @@ def run(args: argparse.Namespace) -> int:
     else:
         sessions, notes = _watched(args) if kind == "port" else _logged(args)
     from calibration.contact.table import contact_table
-    from skinfab.cli.contact_files import write_files
 
     tables = {name: contact_table([(each.recording, each.found) for each in trials]) for name, trials in sessions.items()}
     for trials in sessions.values():
@@ -102,7 +108,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 #: Options that not every kind of source has.
-_ONLY = {"object": SIMULATOR, "trials": SIMULATOR, "seed": SIMULATOR, "seconds": "port", "baud": "port"}
+_ONLY = {"wiring": "log", "object": SIMULATOR, "trials": SIMULATOR, "seed": SIMULATOR, "seconds": "port", "baud": "port"}
 
 
 def _kind(args: argparse.Namespace) -> str:
@@ -137,12 +143,22 @@ def _logged(args: argparse.Namespace) -> tuple[dict[str, list[Trial]], list[str]
     from skinfab.readout.checks import check_times
     from skinfab.readout.logs.log import read_log
 
+    wires = ()
+    if args.wiring:
+        from skinfab.wired import load_wiring, rests, wired
+
+        wires = load_wiring(args.wiring)
     trials, notes = [], []
     with terminal_progress(quiet=args.json) as progress:
         for k, path in enumerate(args.logs):
             progress(k / len(args.logs), Path(path).name)
             log = read_log(path)
             notes += [*log.notes, *(f"{log.file}: {wrong}" for wrong in check_times(log.recording))]
+            if wires:
+                stream, told = wired(log.recording.stream, wires)
+                log = replace(log, recording=replace(log.recording, stream=stream))
+                told += [each.verdict for each in rests(log.recording, wires) if each.verdict]
+                notes += [f"{log.file}: {each}" for each in told]
             try:
                 found = detect(log.recording, false_alarms=args.false_alarms, channels=args.channel)
             except InputError as fault:

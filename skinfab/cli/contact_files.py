@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from calibration.contact.table import Row
     from skinfab.cli.contact import Trial
 
+#: What every run leaves; and what only one on the simulator does.
+FILES, TRUTH = ("contact.png", "events.csv", "result.json", "table.csv"), "truth.csv"
 _EVENT = ["object", "log", "channel", "start_s", "end_s", "sign", "strength", "saturated", "dropped", "simulated"]
 _ROW = [
     "object",
@@ -56,13 +58,13 @@ def write_files(
     with staged_folder(target) as folder:
         (folder / "events.csv").write_text(_csv(_EVENT, found))
         if true:
-            (folder / "truth.csv").write_text(_csv(_EVENT, true))
+            (folder / TRUTH).write_text(_csv(_EVENT, true))
         (folder / "table.csv").write_text(_csv(_ROW, _rows(tables, result)))
         (folder / "result.json").write_text(json.dumps(result, indent=1, allow_nan=False) + "\n")
         draw_contacts([Panel(each.name, each.recording, each.found, each.truth) for _, each in panels], folder / "contact.png")
         names = tuple(sorted(each.name for each in folder.iterdir()))
     if not true:
-        _remove_truth(target / "truth.csv")
+        _remove_truth(target / TRUTH)
     return names
 
 

@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 #: Must be `calibration.control.controller.LAWS`, which is not imported for a help text.
 LAWS = ("p", "branches", "full")
 RATE_HZ = 100.0
+#: What a run leaves.
+FILES = ("control.csv", "control.json", "control.png")
 
 
 def gain(text: str) -> float | None:
@@ -58,7 +60,10 @@ def run(args: argparse.Namespace) -> int:
     """Judge the gain, control, write, and say how well it went."""
     _require_fitting_options(args)
     from calibration.control.margin import judged
+    from skinfab.files import require_apart
 
+    log = None if args.what == "simulator" else args.what
+    require_apart(args.output, FILES, [path for path in (log, args.human, args.robot) if path])
     human, robot = _inputs(args)
     margin = judged(robot, args.controller, args.gain, lag_s=args.lag, delay_s=args.delay, period_s=1 / RATE_HZ, force=args.force)
     if not args.json:
@@ -78,7 +83,7 @@ def run(args: argparse.Namespace) -> int:
     steps.say(notes)
     for line in _lines(result):
         print(line)
-    print(f"{args.output}: control.csv, control.json, control.png")
+    print(f"{args.output}: {', '.join(FILES)}")
     return 0
 
 
@@ -142,7 +147,7 @@ def _simulated(args: argparse.Namespace, human: Input, robot: Input, margin: Mar
 
 def facts(args: argparse.Namespace, runs: Sequence[Run], margin: Margin, notes: Sequence[str]) -> dict[str, Any]:
     """The result, ready for JSON."""
-    from calibration.control.controller import Beyond
+    from calibration.control.laws import Beyond
     from calibration.control.protocols import PAPER_DEG
 
     def share(of: list[bool]) -> float:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,6 +16,9 @@ if TYPE_CHECKING:
     from calibration.strain.document import SensorCalibration
     from skinfab.readout.logs.log import Log
     from skinfab.readout.replay import Replay
+
+#: What a run with -o leaves.
+FILES = ("replay.csv", "replay.png", "result.json")
 
 
 def pace(text: str) -> float | None:
@@ -34,6 +38,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     p.add_argument("--calibration", metavar="FILE", type=Path, help="calibration.json of skinfab calibrate: angles are given out")
     p.add_argument("--signal", metavar="COLUMN", help="channel to read the angle from (default: the calibration's)")
     p.add_argument("--bridge", metavar=("SUPPLY_V", "SERIES_KOHM"), type=steps.positive, nargs=2, help="voltages also as resistances")
+    p.add_argument("--wiring", metavar="FILE", type=Path, help="wiring.csv of the skin, or its .skin: channels get their sensors' names")
     p.add_argument("--speed", metavar="X|max", type=pace, default=argparse.SUPPRESS, help="1: as recorded (default: max; 1 with --serve)")
     p.add_argument(
         "--serve", action="store_true", help="send the log over a pseudo-terminal, as a board would, until it is read to its end"
@@ -49,16 +54,26 @@ def run(args: argparse.Namespace) -> int:
         args.wrong_usage("--serve sends the log and nothing else; leave out -o, --calibration, --bridge and --json")
     if args.signal and not args.calibration:
         args.wrong_usage("--signal says what the calibration is to read; give --calibration too")
+    from skinfab.files import require_apart
     from skinfab.readout.checks import check
     from skinfab.readout.logs.log import read_log
     from skinfab.readout.replay import Replay
 
+    if args.output:
+        require_apart(args.output, FILES, [path for path in (args.log, args.calibration) if path])
     calibration = _calibration(args.calibration)
     log = read_log(args.log)
+    wires, notes = (), list(log.notes)
+    if args.wiring:
+        from skinfab.wired import load_wiring, wired
+
+        wires = load_wiring(args.wiring)
+        stream, more = wired(log.recording.stream, wires)
+        log, notes = replace(log, recording=replace(log.recording, stream=stream)), [*notes, *more]
     source = Replay(log.recording, speed=getattr(args, "speed", 1.0 if args.serve else None))
     found = check(log.recording)
     if args.serve:
-        steps.say([*log.notes, *found])
+        steps.say([*notes, *found])
         return _serve(source, len(log.recording))
     with terminal_progress(quiet=args.json) as progress:
         columns, facts = _through(args, source, log, calibration, progress)
@@ -69,19 +84,26 @@ def run(args: argparse.Namespace) -> int:
         "lost": source.counts.lost,
         "duration_s": _span(columns["time_s"]),
         "checks": found,
-        "notes": list(log.notes),
+        "notes": notes,
         **facts,
     }
+    table: list[str] = []
+    if wires:
+        from skinfab.wired import rest_facts, rest_lines, rests
+
+        rest = rests(log.recording, wires, known={name: math.nan if r is None else r for name, r in facts.get("r0_kohm", {}).items()})
+        notes += [each.verdict for each in rest if each.verdict]
+        result["at_rest"], table = rest_facts(rest), rest_lines(rest)
     if args.output:
         _write(args.output, columns, result, log, calibration)
     if args.json:
         print(json.dumps(result, allow_nan=False))
         return 0
-    steps.say([*log.notes, *found])
-    for line in _lines(result):
+    steps.say([*notes, *found])
+    for line in [*_lines(result), *table]:
         print(line)
     if args.output:
-        print(f"{args.output}: replay.csv, replay.png, result.json")
+        print(f"{args.output}: {', '.join(FILES)}")
     return 0
 
 
