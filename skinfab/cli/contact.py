@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from calibration.contact.score import Score
     from calibration.contact.table import Row
     from skinfab.readout.frame import Recording
+    from skinfab.wiring import Wire
 
 SIMULATOR = "simulator"
 #: Must be the names of `calibration.contact.objects.OBJECTS`, which is not imported for a help text.
@@ -143,7 +144,7 @@ def _logged(args: argparse.Namespace) -> tuple[dict[str, list[Trial]], list[str]
     from skinfab.readout.checks import check_times
     from skinfab.readout.logs.log import read_log
 
-    wires = ()
+    wires: tuple[Wire, ...] = ()
     if args.wiring:
         from skinfab.wired import load_wiring, rests, wired
 

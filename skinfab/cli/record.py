@@ -7,7 +7,7 @@ import json
 import sys
 import threading
 import time
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from skinfab.readout.paced import PacedFrames
     from skinfab.readout.record import State
     from skinfab.readout.serial_port import SerialPort
+    from skinfab.wired import AtRest
+    from skinfab.wiring import Wire
 
 SIMULATOR = "simulator"
 #: A larger recording is not read again at its end to be checked.
@@ -56,6 +58,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     p.add_argument("--baud", metavar="N", type=baud, help="of the port (default: 921600; a board with USB of its own does not care)")
     p.add_argument("--channels", metavar="N", type=channels, help="of the simulator (default: 32)")
     p.add_argument("--rate", metavar="HZ", type=steps.positive, help="of the simulator (default: 100)")
+    p.add_argument("--wiring", metavar="FILE", type=Path, help="wiring.csv of the skin, or its .skin: channels get their sensors' names")
     p.add_argument("--json", action="store_true", help="print the result as one JSON object and nothing else")
     p.set_defaults(run=run, wrong_usage=p.error)
 
@@ -71,32 +74,56 @@ def run(args: argparse.Namespace) -> int:
     from skinfab.readout.serial_port import SerialPort
 
     require_new(args.output)
-    with _source(args) as source, Recorder(args.output, source.stream) as recorder:
+    wires = _wires(args.wiring)
+    wiring_notes: list[str] = []
+    with _source(args) as source, ExitStack() as opened:
+        stream = source.stream
+        if wires:
+            from skinfab.wired import wired
+
+            stream, wiring_notes = wired(stream, wires)
+            if not args.json:
+                steps.say(wiring_notes)
+        recorder = opened.enter_context(Recorder(args.output, stream))
         began = time.time()
         with _shown(quiet=args.json, source=source) as show, _ended_by_signals() as stop:
             record(source, recorder, seconds=args.seconds, told=show, stop=stop)
         counts, gone = asdict(source.counts), outages(source, began, time.time())
         fault = source.fault if isinstance(source, SerialPort) else ""
-    notes = _notes(counts, args.output, recorder.bytes if recorder.frames else 0)
+    notes, rest = _notes(counts, args.output, recorder.bytes if recorder.frames else 0, wires)
     if counts["bad"] and fault:
         notes.append(f"the last that was none: {fault}")
     result: dict[str, Any] = {
         "file": str(args.output),
         "stream": source.stream.name,
         "simulated": source.stream.simulated,
-        "channels": list(source.stream.names),
+        "channels": list(stream.names),
         "frames": recorder.frames,
         "bytes": recorder.bytes,
         "counts": counts,
         "outages": gone,
         "notes": [*outage_notes(args.port, gone), *notes],
     }
+    if wires:
+        from skinfab.wired import rest_facts, rest_lines
+
+        result |= {"at_rest": rest_facts(rest), "wiring_notes": wiring_notes}
     if args.json:
         print(json.dumps(result, allow_nan=False))
         return 0
     steps.say(result["notes"])
     print(_sentence(result))
+    for line in rest_lines(rest) if wires else []:
+        print(line)
     return 0
+
+
+def _wires(path: Path | None) -> tuple[Wire, ...]:
+    if path is None:
+        return ()
+    from skinfab.wired import load_wiring
+
+    return load_wiring(path)
 
 
 def _source(args: argparse.Namespace) -> SerialPort | PacedFrames:
@@ -207,8 +234,8 @@ def outage_notes(port: str, gone: Sequence[dict[str, Any]]) -> list[str]:
     ]
 
 
-def _notes(counts: dict[str, int], path: Path, size: int) -> list[str]:
-    """What is to be known of the recording, a sentence each."""
+def _notes(counts: dict[str, int], path: Path, size: int, wires: tuple[Wire, ...]) -> tuple[list[str], tuple[AtRest, ...]]:
+    """What is to be known of the recording, a sentence each; its resistances at rest where it is known whose they are."""
     from skinfab.readout.checks import check
     from skinfab.readout.logs.log import read_log
 
@@ -219,11 +246,18 @@ def _notes(counts: dict[str, int], path: Path, size: int) -> list[str]:
         "reopened": "times the port was gone and came back, or the device began anew",
     }
     notes = [f"{counts[name]:,} {words}" for name, words in told.items() if counts[name]]
+    rest: tuple[AtRest, ...] = ()
     if not size:
         notes.append("no frame came; no file was left")
     elif size <= _CHECKED_BYTES:
-        notes += check(read_log(path).recording)
-    return notes
+        recording = read_log(path).recording
+        notes += check(recording)
+        if wires:
+            from skinfab.wired import rests
+
+            rest = rests(recording, wires)
+            notes += [each.verdict for each in rest if each.verdict]
+    return notes, rest
 
 
 def _sentence(result: dict[str, Any]) -> str:

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from calibration.strain.document import SensorCalibration
     from skinfab.readout.logs.log import Log
     from skinfab.readout.replay import Replay
+    from skinfab.wiring import Wire
 
 #: What a run with -o leaves.
 FILES = ("replay.csv", "replay.png", "result.json")
@@ -63,7 +64,8 @@ def run(args: argparse.Namespace) -> int:
         require_apart(args.output, FILES, [path for path in (args.log, args.calibration) if path])
     calibration = _calibration(args.calibration)
     log = read_log(args.log)
-    wires, notes = (), list(log.notes)
+    wires: tuple[Wire, ...] = ()
+    notes = list(log.notes)
     if args.wiring:
         from skinfab.wired import load_wiring, wired
 
