@@ -14,13 +14,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Literal, NamedTuple, Protocol
+from typing import Literal
 
-from calibration.control.lead import Lead
-from calibration.control.observer import JointObserver
-from calibration.strain.curve import Curve
+from calibration.control.laws import Beyond, Branches, Full, Published, Rule, Wanted
 from calibration.strain.document import SensorCalibration
-from calibration.strain.models import BranchModel, Model
+from calibration.strain.models import BranchModel
 from skinfab.errors import InputError
 from skinfab.readout.frame import Frame
 
@@ -33,6 +31,8 @@ LIMIT_DEG_S = 500.0
 MAX_AGE_S = 0.1
 #: For so long the last safe command goes on without a good frame, s; then the joint is stopped.
 HOLD_S = 0.1
+#: After a stop the speed may grow by this, deg/s^2: from rest to the limit in a second. What happened meanwhile nobody knows.
+RESUME_DEG_S2 = 500.0
 
 
 @dataclass(frozen=True)
@@ -41,14 +41,6 @@ class Input:
 
     calibration: SensorCalibration
     column: int = 0
-
-
-class Beyond(NamedTuple):
-    """What lies outside the calibrated ranges, so that the end of the range was taken instead."""
-
-    human: bool = False  # the human's reading
-    target: bool = False  # the angle aimed at, which the robot's curve does not have
-    robot: bool = False  # the robot's reading
 
 
 @dataclass(frozen=True)
@@ -67,7 +59,7 @@ class Command:
     beyond : Beyond
         Which of both readings and the target lie outside what the calibrations know.
     clamped : bool
-        The law asked for more than the limit.
+        The law asked for more than the limit, or for more than is allowed so soon after a stop.
     """
 
     speed: float
@@ -82,12 +74,6 @@ class Command:
     def outside(self) -> bool:
         """Is any of them outside?"""
         return any(self.beyond)
-
-
-class _Rule(Protocol):
-    """A control law: readings (dU/U0) and the last command in, speed, target, angle and what was outside out."""
-
-    def step(self, time: float, human: float, robot: float, command: float) -> tuple[float, float, float, Beyond]: ...
 
 
 class JointController:
@@ -132,36 +118,45 @@ class JointController:
         if law not in LAWS:
             raise InputError(f"there is no control law {law!r}; there are {', '.join(LAWS)}")
         self.human, self.robot, self.limit = human, robot, limit_deg_s
-        self._rule: _Rule
+        self.period_s = period_s
+        self._rule: Rule
         if law == "p":
-            self._rule = _Published(human.calibration.model, robot.calibration.model, gain)
+            self._rule = Published(human.calibration.model, robot.calibration.model, gain)
         elif law == "branches":
-            self._rule = _Branches(branches_of(human, "human"), branches_of(robot, "robot"), gain)
+            self._rule = Branches(branches_of(human, "human"), branches_of(robot, "robot"), gain)
         else:
-            self._rule = _Full(
-                branches_of(human, "human"), branches_of(robot, "robot"), gain, lag_s=lag_s, delay_s=delay_s, period_s=period_s
-            )
+            times = {"lag_s": lag_s, "delay_s": delay_s, "period_s": period_s, "hole_s": HOLD_S}
+            self._rule = Full(branches_of(human, "human"), branches_of(robot, "robot"), gain, **times)
         self._safe = 0.0
         self._last = Command(0.0, "stop", "no frame yet", math.nan, math.nan, Beyond(), False)
         self._good_at: float | None = None
+        self._resumed_at: float | None = None
 
     def step(self, time: float, human: Frame | None, robot: Frame | None) -> Command:
         """The command from now (`time`, s, by the clock of the frames' `host_time`) until the next step."""
-        reason = _unfit(time, human, self.human, "human") or _unfit(time, robot, self.robot, "robot")
-        if reason:
-            return self._without(time, reason)
-        assert human is not None and robot is not None
+        unfit = [_unfit(time, human, self.human, "human"), _unfit(time, robot, self.robot, "robot")]
         readings = [
-            (float(frame.values[each.column]) - each.calibration.u0) / each.calibration.u0
-            for frame, each in ((human, self.human), (robot, self.robot))
+            None if why or frame is None else (float(frame.values[each.column]) - each.calibration.u0) / each.calibration.u0
+            for why, frame, each in zip(unfit, (human, robot), (self.human, self.robot), strict=True)
         ]
-        wanted, target, angle, beyond = self._rule.step(time, readings[0], readings[1], self._last.speed)
-        if not math.isfinite(wanted):
+        # Also without a good frame of one of them: the other's is remembered, and that time went by.
+        wanted = self._rule.step(time, readings[0], readings[1], self._last.speed)
+        if wanted is None:
+            return self._without(time, next(why for why in unfit if why))
+        if not math.isfinite(wanted.speed):
             return self._without(time, "the law gave no number")
-        speed = min(max(wanted, -self.limit), self.limit)
-        self._safe, self._good_at = speed, time
-        self._last = Command(speed, "run", "", target, angle, beyond, speed != wanted)
+        self._last = self._run(time, wanted)
+        self._safe, self._good_at = self._last.speed, time
         return self._last
+
+    def _run(self, time: float, wanted: Wanted) -> Command:
+        if self._good_at is not None and (self._last.state == "stop" or not 0 <= time - self._good_at <= HOLD_S + self.period_s):
+            self._resumed_at = time
+        limit = self.limit
+        if self._resumed_at is not None:
+            limit = min(limit, RESUME_DEG_S2 * (time - self._resumed_at + self.period_s))
+        speed = min(max(wanted.speed, -limit), limit)
+        return Command(speed, "run", "", wanted.target, wanted.angle, wanted.beyond, speed != wanted.speed)
 
     def _without(self, time: float, reason: str) -> Command:
         held = self._good_at is not None and 0 <= time - self._good_at <= HOLD_S
@@ -220,57 +215,3 @@ def _unfit(time: float, frame: Frame | None, of: Input, whose: str) -> str:
     if frame.saturated[of.column]:
         return f"the {whose} sensor is saturated"
     return ""
-
-
-class _Published:
-    """Proportional on dU/U0, by the curves alone."""
-
-    def __init__(self, human: Model, robot: Model, gain: float) -> None:
-        self._human, self._robot = human.curve, robot.curve
-        self._gain = gain / mean_slope(self._robot)
-
-    def step(self, time: float, human: float, robot: float, command: float) -> tuple[float, float, float, Beyond]:
-        target, far = self._human.angle(human)
-        aim = min(max(float(target), self._robot.low), self._robot.high)
-        angle, out = self._robot.angle(robot)
-        speed = self._gain * (float(self._robot.signal(aim)) - robot)
-        return speed, aim, float(angle), Beyond(bool(far), aim != float(target), bool(out))
-
-
-class _Branches:
-    """Proportional in the angle, by the branches."""
-
-    def __init__(self, human: BranchModel, robot: BranchModel, gain: float) -> None:
-        self._human, self._robot, self._gain = human.tracker(), robot.tracker(), gain
-        self._low, self._high = robot.curve.low, robot.curve.high
-
-    def step(self, time: float, human: float, robot: float, command: float) -> tuple[float, float, float, Beyond]:
-        target, far = self._human.step(time, human)
-        angle, out = self._robot.step(time, robot)
-        aim = min(max(target, self._low), self._high)
-        return self._gain * (aim - angle), aim, angle, Beyond(bool(far), aim != target, bool(out))
-
-
-class _Full:
-    """The same of angles led on to the present, with the human's speed fed forward."""
-
-    def __init__(self, human: BranchModel, robot: BranchModel, gain: float, *, lag_s: float, delay_s: float, period_s: float) -> None:
-        self._human, self._gain, self._lag = human.tracker(), gain, lag_s
-        self._lead = Lead(delay_s, period_s)
-        self._observer = JointObserver(robot, lag_s=lag_s, delay_s=delay_s, period_s=period_s)
-        self._curve = robot.curve
-
-    def step(self, time: float, human: float, robot: float, command: float) -> tuple[float, float, float, Beyond]:
-        shown, far = self._human.step(time, human)
-        target, speed, acceleration = self._lead.step(shown)
-        angle = self._observer.step(robot, command)
-        aim = min(max(target, self._curve.low), self._curve.high)
-        # At an end of the range there is nothing to go on to.
-        ahead = 0.0 if aim != target else speed + self._lag * acceleration
-        _, out = self._curve.angle(robot)
-        return self._gain * (aim - angle) + ahead, aim, angle, Beyond(bool(far), aim != target, bool(out))
-
-
-def mean_slope(curve: Curve) -> float:
-    """Of a curve that does not turn, over its range, 1/deg."""
-    return float(curve.ordinates[-1] - curve.ordinates[0]) / (curve.high - curve.low)

@@ -43,12 +43,18 @@ class Lead:
         self._state: FloatArray | None = None
         self._before = 0.0
 
-    def step(self, angle: float) -> tuple[float, float, float]:
-        """Angle (deg), speed (deg/s) and acceleration (deg/s^2) at the present."""
+    def restart(self) -> None:
+        """What came before is too long ago: the next angle is one at rest."""
+        self._state = None
+
+    def step(self, angle: float, *, steps: int = 1) -> tuple[float, float, float]:
+        """Angle (deg), speed (deg/s) and acceleration (deg/s^2) at the present, so many periods after the last one."""
         if self._state is None:
             self._state, self._before = np.array([angle, 0.0, 0.0]), angle
-        self._state = self._A @ self._state + self._b * self._before + self._c * (angle - self._before)
-        self._before = angle
+        for left in range(steps, 0, -1):  # what is missing lies on a straight line
+            change = (angle - self._before) / left
+            self._state = self._A @ self._state + self._b * self._before + self._c * change
+            self._before += change
         x, v, a = self._state.tolist()
         t = self._ahead
         return x + v * t + a * t * t / 2, v + a * t, a

@@ -74,18 +74,17 @@ def run_loop(source: Source, controller: JointController, send: Callable[[float]
         As the source.
     """
     clock = HostClock()
-    period = 1 / (source.stream.rate_hz or RATE_HZ)
     rows: list[tuple[float, int, float]] = []
     commands: list[Command] = []
     passed, last = 0, -1
     # All that there is by now stays: the collector need not walk it in the midst of the loop, which takes it 50 ms.
     gc.collect()
     gc.freeze()
-    time.sleep(period)  # whoever reads the source in a thread of its own stood still meanwhile, and catches up
+    time.sleep(controller.period_s)  # whoever reads the source in a thread of its own stood still meanwhile, and catches up
     began = time.monotonic()
     try:
         while time.monotonic() < began + seconds:
-            frame = _newest(source, PATIENCE * period)
+            frame = _newest(source, PATIENCE * controller.period_s)
             now = clock.now()
             command = controller.step(now, frame, frame)
             send(command.speed)

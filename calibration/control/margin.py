@@ -21,7 +21,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from calibration.control.controller import Input, Law, mean_slope
+from calibration.control.controller import Input, Law
+from calibration.control.laws import mean_slope
 from calibration.strain.models import BranchModel
 from skinfab.errors import InputError, RefusedError
 

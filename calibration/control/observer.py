@@ -29,9 +29,11 @@ class JointObserver:
         Time constant of the joint's speed; from motion to the frame that shows it.
     period_s : float
         Between steps.
+    hole_s : float
+        After longer without a reading the angle is put where the next one allows, at once.
     """
 
-    def __init__(self, model: BranchModel, *, lag_s: float, delay_s: float, period_s: float) -> None:
+    def __init__(self, model: BranchModel, *, lag_s: float, delay_s: float, period_s: float, hole_s: float) -> None:
         self._model = model
         self._kept = math.exp(-period_s / lag_s) if lag_s > 0 else 0.0
         self._lag, self._period = lag_s, period_s
@@ -40,19 +42,68 @@ class JointObserver:
         self._speed = 0.0
         self._delay = round(delay_s / period_s)
         self._past: deque[float] = deque(maxlen=self._delay + max(round(MOVING_S / period_s), 1))
-        self._share = 1 - math.exp(-period_s / CORRECTION_S)
+        self._correction = period_s / CORRECTION_S
+        self._most = round(hole_s / period_s)
+        self._before = math.nan
+        self._missing = 0
 
-    def step(self, signal: float, command: float) -> float:
-        """The angle (deg) now: `signal` (dU/U0) has just arrived, and `command` (deg/s) was in force since the last step."""
-        low, high, way, ago = self._way.step(signal)
-        if self._angle is None:
-            self._angle = (low + high) / 2
+    def restart(self) -> None:
+        """Nobody knows what happened since the last step: begin anew."""
+        self._angle, self._speed, self._missing = None, 0.0, 0
+        self._past.clear()
+        self._way.clear()
+
+    def step(self, signal: float | None, command: float, *, steps: int = 1) -> float | None:
+        """The angle now.
+
+        Parameters
+        ----------
+        signal : float or None
+            The reading (dU/U0) that has just arrived; None where there is no good one.
+        command : float, deg/s
+            In force since the last step.
+        steps : int
+            Periods since then.
+
+        Returns
+        -------
+        angle : float or None, deg
+            None before the first reading.
+        """
+        if self._angle is not None:
+            for _ in range(steps):
+                self._go_on(command)
+        self._missing += steps
+        if signal is None or (steps == 0 and self._angle is not None):
+            return self._angle
+        went, self._missing = self._missing, 0
+        if self._angle is None or went > self._most + 1:
+            return self._placed(signal)
+        for k in range(1, went + 1):
+            low, high, way, ago = self._way.step(self._before + (signal - self._before) * k / went)
+        self._before = signal
+        then = self._past[max(len(self._past) - 1 - self._delay - ago, 0)]
+        shown = high if way > 0 else low if way < 0 else min(max(then, low), high)
+        return self._moved((1 - math.exp(-went * self._correction)) * (shown - then))
+
+    def _go_on(self, command: float) -> None:
+        assert self._angle is not None
         self._angle += command * self._period + (self._speed - command) * self._lag * (1 - self._kept)
         self._speed = command + (self._speed - command) * self._kept
         self._past.append(self._angle)
-        then = self._past[max(len(self._past) - 1 - self._delay - ago, 0)]
-        shown = high if way > 0 else low if way < 0 else min(max(then, low), high)
-        error = self._share * (shown - then)
+
+    def _placed(self, signal: float) -> float:
+        """The first reading, or the first one for long: the angle is where it allows, in its middle where nothing is known."""
+        self._way.clear()
+        low, high, _, _ = self._way.step(signal)
+        self._before = signal
+        if self._angle is None:
+            self._angle = (low + high) / 2
+            self._past.append(self._angle)
+        return self._moved(min(max(self._angle, low), high) - self._angle)
+
+    def _moved(self, error: float) -> float:
+        assert self._angle is not None
         self._angle += error
         for k in range(len(self._past)):
             self._past[k] += error
@@ -67,6 +118,10 @@ class Way:
         self._least = MOVING_PART * abs(float(model.curve.ordinates[-1] - model.curve.ordinates[0]))
         self._sign = 1 if model.curve.rising else -1
         self._recent: deque[float] = deque(maxlen=2 * max(round(MOVING_S / period_s), 1))
+
+    def clear(self) -> None:
+        """What came before is too long ago."""
+        self._recent.clear()
 
     def step(self, signal: float) -> tuple[float, float, int, int]:
         """What the reading says, its noise evened out.

@@ -1,9 +1,12 @@
 """Where joint control fails: each test first shows the plain way fail, then what is done instead."""
 
+from dataclasses import replace
+from typing import Any
+
 import numpy as np
 import pytest
 
-from calibration.control.controller import Input, JointController
+from calibration.control.controller import LAWS, RESUME_DEG_S2, Input, JointController, Law
 from calibration.control.margin import judged
 from calibration.control.protocols import Motion, follow, uniform
 from calibration.finger.logs import calibrated, prepared
@@ -14,7 +17,7 @@ from calibration.strain.models import CurveModel
 from skinfab.errors import InputError, RefusedError
 from skinfab.readout.frame import Frame
 
-TIMES = {"lag_s": 0.1, "delay_s": 0.05, "period_s": 0.01}
+TIMES: dict[str, Any] = {"lag_s": 0.1, "delay_s": 0.05, "period_s": 0.01}
 
 
 @pytest.fixture(scope="module")
@@ -124,3 +127,54 @@ def test_play_costs_the_published_law_what_branches_do_not_lose(branches: tuple[
     published = follow(motion, JointController(*plain, law="p", gain=5.1), seed=0)
     full = follow(motion, JointController(*branches, gain=3.99), seed=0)
     assert published.error_deg > 6 and full.error_deg < 3.3
+
+
+def over_a_hole(
+    inputs: tuple[Input, Input], law: Law, lasts: float, *, robots_alone: bool, seen: bool = True, at: float = 5.0
+) -> tuple[np.ndarray, np.ndarray]:
+    """Times (s) since the hole's end and commands from there on, of a human who moves by 20 deg/s at most.
+
+    Not `seen`: the controller's clock stands still in the hole, which is what a law does that counts frames instead of time.
+    Without noise, which by itself makes commands of 400 deg/s here.
+    """
+    silent = [replace(sensor, noise=0.0) for sensor in (HUMAN, ROBOT)]
+    controller, finger = JointController(*inputs, law=law, gain=3.99), Finger(Plant(sensor=silent[1]), seed=0, angle=40.0)
+    reader, speed, out = Reader(silent[0], 0.05, np.random.default_rng(1)), 0.0, []
+    for k in range(round((at + 3) * RATE_HZ)):
+        time = k / RATE_HZ
+        shown, human = finger.step(time, speed), reader.read(time, 40 + 20 * np.sin(time))
+        if at <= time < at + lasts:
+            if seen:
+                speed = controller.step(time, human if robots_alone else None, None).speed
+            elif time >= at + 0.1:
+                speed = 0.0
+            continue
+        if not seen and time >= at:
+            time -= lasts
+            human, shown = (_restamped(each, time) for each in (human, shown))
+        speed = controller.step(time, human, shown).speed
+        out.append(speed)
+    since = np.arange(round((3.0 - lasts) * RATE_HZ)) / RATE_HZ
+    return since, np.array(out[-len(since) :])
+
+
+@pytest.mark.parametrize("robots_alone", [False, True])
+def test_after_a_hole_the_first_command_is_a_jump(branches: tuple[Input, Input], robots_alone: bool) -> None:
+    """A second without frames (or without the robot's) counted as one period: the human's 18 degrees in 10 ms are fed forward."""
+    _, jumps = over_a_hole(branches, "full", 1.0, robots_alone=robots_alone, seen=False)
+    assert np.abs(jumps[:5]).max() > 300
+    for law in LAWS:
+        since, speed = over_a_hole(branches, law, 1.0, robots_alone=robots_alone)
+        assert (np.abs(speed) <= RESUME_DEG_S2 * (since + 0.01) + 1e-9).all()
+        assert np.abs(speed).max() < 100 and np.abs(speed[-50:]).max() < 70
+
+
+@pytest.mark.parametrize("robots_alone", [False, True])
+def test_a_hole_that_is_held_over_is_no_jump_either(branches: tuple[Input, Input], robots_alone: bool) -> None:
+    """80 ms are bridged by the last command; the human's angle counts as having gone straight meanwhile."""
+    options: dict[str, Any] = {"robots_alone": robots_alone, "at": 3.0}
+    _, jumps = over_a_hole(branches, "full", 0.08, **options, seen=False)
+    _, speed = over_a_hole(branches, "full", 0.08, **options)
+    _, smooth = over_a_hole(branches, "full", 0.0, **options)
+    smooth = smooth[8:]
+    assert np.abs(jumps - smooth)[:10].max() > 60 and np.abs(speed - smooth)[:100].max() < 4
