@@ -114,7 +114,7 @@ class AngleRow(ttk.Frame):
         words = "no reading" if reading is None or silent else reading.fault
         doubtful = reading is not None and reading.outside and not words
         if doubtful:
-            words = "beyond what it was calibrated for"
+            words = "beyond its calibration"
         self.dial.show(angle, words, made.low, made.high, doubtful=doubtful)
 
     def _choose(self) -> None:

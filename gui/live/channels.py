@@ -13,14 +13,24 @@ def sensors_of(stream: Stream, skin: Skin | None) -> tuple[str, ...]:
     """The sensor of each channel, by id; "" where it has none.
 
     What a channel says of itself counts first: its sensor, then its board and input, as in the wiring table. Otherwise its place in
-    the stream is its number, as skins count channels.
+    the stream is its number, as skins count channels. One that measures something else than the sensor there is none of the skin's.
     """
     if skin is None:
         return ("",) * len(stream.channels)
-    ids, by_number = {s.id for s in skin.sensors}, {s.channel: s.id for s in skin.sensors}
-    return tuple(
-        channel.sensor if channel.sensor in ids else by_number.get(number_of(channel, k), "") for k, channel in enumerate(stream.channels)
-    )
+    kinds, by_number = kinds_of(skin), {s.channel: s.id for s in skin.sensors}
+
+    def sensor_of(channel: Channel, k: int) -> str:
+        if channel.sensor in kinds:
+            return channel.sensor
+        there = by_number.get(number_of(channel, k), "")
+        return there if not channel.kind or channel.kind == kinds.get(there) else ""
+
+    return tuple(sensor_of(channel, k) for k, channel in enumerate(stream.channels))
+
+
+def kinds_of(skin: Skin) -> dict[str, str]:
+    """What each sensor measures, "contact" or "strain", by id: the first word of its pattern's name."""
+    return {s.id: s.pattern.kind.split("-")[0] for s in skin.sensors}
 
 
 def number_of(channel: Channel, place: int) -> int:
@@ -40,7 +50,7 @@ def watched(stream: Stream, sensors: Sequence[str], skin: Skin | None) -> tuple[
     Those that measure contact, by what the stream says or, where it says nothing, by the pattern of their sensor on the skin. All,
     where neither says anything of any.
     """
-    kinds = {} if skin is None else {s.id: s.pattern.kind.split("-")[0] for s in skin.sensors}
+    kinds = {} if skin is None else kinds_of(skin)
     said = [channel.kind or kinds.get(sensor, "") for channel, sensor in zip(stream.channels, sensors, strict=True)]
     if not any(said):
         return stream.names

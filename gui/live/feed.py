@@ -20,6 +20,7 @@ from calibration.strain.document import SensorCalibration
 from calibration.strain.reading import Reading
 from gui.jobs.worker import sentence_of
 from gui.live.choices import Choice, LogChoice, source_of
+from gui.live.picture import warm
 from gui.live.player import Player
 from gui.live.stream_clock import StreamClock
 from gui.live.watch import Watch, require_readable
@@ -252,6 +253,7 @@ class Feed:
             self._state = "ended"
 
     def _read(self) -> None:
+        warm()
         source, self.notes = source_of(self.choice)
         with source:
             stream = source.stream

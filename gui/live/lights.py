@@ -121,7 +121,7 @@ class Lights:
                 points, radius = self._round(self._derived.object_line(skin, by_id[id]))
                 self._view3d.glow(f"live {id}", points, colour, radius=radius, strength=light.strength)
                 line = self._derived.flat_line(by_id[id])
-                self._view2d.show(f"live {id}", [(by_id[id].piece, line)], colour, 2.0 + light.step)
+                self._view2d.show(f"live {id}", [(by_id[id].piece, line)], colour, 1.5 + 0.5 * light.step, words=id)
         self.lit = dict(lit)
 
     @staticmethod

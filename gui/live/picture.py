@@ -1,9 +1,10 @@
-"""Strips of curves as a picture, all channels at once: numpy alone, so that 32 of them cost no more than their pixels."""
+"""Strips of curves as a picture, all channels at once, so that 32 of them cost no more than the pixels they cover."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numba
 import numpy as np
 from numpy.typing import NDArray
 
@@ -58,36 +59,47 @@ def strips(
     (c * height, w) uint32
         Red, green, blue and 255 in the order of the bytes.
     """
-    shade = _cover(spans, low, high, height, width_px)
-    c, _, w = shade.shape
-    palette = np.stack([_palette(ink) for ink in inks])
-    picture = np.take(palette.ravel(), shade + (np.arange(c) * _SHADES)[:, None, None], mode="clip")
+    top, bottom = _edges(spans, low, high, height, width_px)
     line = _packed(np.array([rgb(grid_colour)]))[0]
-    for column in grid:
-        free = shade[:, :, column] == 0
-        picture[:, :, column][free] = line
-    picture[:, -1] = np.where(shade[:, -1] == 0, line, picture[:, -1])
-    return picture.reshape(c * height, w)
+    palette = np.stack([_palette(ink) for ink in inks])
+    picture = np.empty((len(inks), height, len(top)), dtype=np.uint32)
+    picture[:] = palette[:, 0, None, None]
+    picture[:, :, grid] = line
+    picture[:, -1] = line
+    _fill(top, bottom, palette, picture)
+    return picture.reshape(len(inks) * height, len(top))
 
 
-def _cover(spans: Spans, low: FloatArray, high: FloatArray, height: int, width_px: float) -> NDArray[np.intp]:
-    """How much of each pixel the curves cover, (c, height, w) from 0 to `_SHADES` - 1."""
+def warm() -> None:
+    """Load what is compiled, beside the window rather than with its first picture."""
+    none = np.zeros((1, 1))
+    strips(Spans(none, none), none[0], none[0] + 1, [Ink("#000000", "#000000")], height=9, grid=[], grid_colour="#000000", width_px=1.0)
+
+
+def _edges(spans: Spans, low: FloatArray, high: FloatArray, height: int, width_px: float) -> tuple[FloatArray, FloatArray]:
+    """From where to where each column of each strip is covered, (w, c) pixels down; to above from where where it is not."""
     room, half = height - 1 - 2 * width_px, width_px / 2
     with np.errstate(invalid="ignore", divide="ignore"):
         scale = np.where(high > low, room / (high - low), np.nan)
         # From the upper edge down; what lies beyond its strip stays at the strip's edge.
-        top = np.clip(width_px + (high - spans.high) * scale, 0, height - 1) - half
-        bottom = np.clip(width_px + (high - spans.low) * scale, 0, height - 1) + half
+        top = np.clip(width_px + (high - spans.high) * scale, half, height - half) - half
+        bottom = np.clip(width_px + (high - spans.low) * scale, half, height - half) + half
     nothing = ~np.isfinite(top) | ~np.isfinite(bottom)
-    top[nothing], bottom[nothing] = np.inf, -np.inf
-    rows = np.arange(height, dtype=np.float32)[None, :, None]
-    upper, lower = top.T.astype(np.float32)[:, None, :], bottom.T.astype(np.float32)[:, None, :]
-    part = np.minimum(rows + 1, lower)
-    part -= np.maximum(rows, upper)
-    np.clip(part, 0, 1, out=part)
-    part *= _SHADES - 1
-    part += 0.5
-    return part.astype(np.intp)
+    top[nothing], bottom[nothing] = 1.0, 0.0
+    return top, bottom
+
+
+@numba.njit(cache=True, nogil=True)
+def _fill(top: FloatArray, bottom: FloatArray, palette: NDArray[np.uint32], picture: NDArray[np.uint32]) -> None:
+    """Only the pixels that a curve covers are touched: of a 4K screen they are few."""
+    strips, height, width = picture.shape
+    for k in range(strips):
+        for column in range(width):
+            upper, lower = top[column, k], bottom[column, k]
+            for row in range(int(upper), min(int(np.ceil(lower)), height)):
+                shade = int((min(row + 1.0, lower) - max(float(row), upper)) * (_SHADES - 1) + 0.5)
+                if shade > 0:
+                    picture[k, row, column] = palette[k, shade]
 
 
 def _palette(ink: Ink) -> NDArray[np.uint32]:

@@ -82,6 +82,11 @@ class Player:
         return self._at >= len(self.recording)
 
     @property
+    def pace(self) -> float:
+        """Times as fast as it was recorded."""
+        return self._speed
+
+    @property
     def paused(self) -> bool:
         """It stands still."""
         return self._paused

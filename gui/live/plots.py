@@ -1,4 +1,4 @@
-"""Scrolling curves, a strip a channel: a picture made by numpy, with names and values as words of the canvas beside it."""
+"""Scrolling curves, a strip a channel: a picture in one go, with names and values as words of the canvas beside it."""
 
 from __future__ import annotations
 

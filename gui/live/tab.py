@@ -137,6 +137,7 @@ class LiveTab(ttk.Frame):
         self.angle.offer(())
         self.angle.show(None, silent=True)
         self._complain("")
+        self._session.report("live notes", [])
         self.connect.connected(choice is not None)
         if choice is None:
             self._stop()
@@ -239,7 +240,9 @@ class LiveTab(ttk.Frame):
 
     def _say(self, feed: Feed, status: Status) -> None:
         opening = "" if isinstance(feed.choice, PortChoice) else f"opening {feed.choice.name}"
-        words = words_of(feed.choice.name, status, standing=self._standing(feed), contacts=feed.contacts, opening=opening)
+        words = words_of(
+            feed.choice.name, status, standing=self._standing(feed), pace=self._pace(feed), contacts=feed.contacts, opening=opening
+        )
         self.status.configure(text=words.text, style=f"{words.kind.title()}.TLabel")
         self.lights.say(self._note(feed, status))
         if feed.records:
@@ -277,9 +280,14 @@ class LiveTab(ttk.Frame):
             return "paused"
         return "at its end" if player.at_end else ""
 
+    def _pace(self, feed: Feed) -> str:
+        player = feed.player
+        return "" if player is None else "at its own pace" if player.pace == 1 else f"{player.pace:g} times its own pace"
+
     def _note(self, feed: Feed, status: Status) -> str:
         """What has to be said beside lights that are not of now."""
-        if not any(self._sensors) or status.stream is None or status.state != "running":
+        watch = feed.watch
+        if watch is None or not watch.contact or not any(self._sensors) or status.stream is None or status.state != "running":
             return ""
         parts = ["simulated"] * status.stream.simulated
         if isinstance(feed.choice, LogChoice):
@@ -333,7 +341,7 @@ class LiveTab(ttk.Frame):
         self._session.report("live", [Problem(sentence, "live")] if sentence else [])
 
     def _complain_of_angle(self, sentence: str) -> None:
-        self._session.report("angle", [Problem(sentence, "angle")] if sentence else [])
+        self._session.report("angle", [Problem(sentence, "angle", kind="warning")] if sentence else [])
 
     def _stop(self) -> None:
         if self._timer:

@@ -49,7 +49,7 @@ class Watch:
     """
 
     def __init__(self, stream: Stream, *, contact: Sequence[str]) -> None:
-        self.stream, self._contact = stream, tuple(contact)
+        self.stream, self.contact = stream, tuple(contact)
         self._counted: list[Frame] = []
         self._calibration: tuple[SensorCalibration, str] | None = None
         self._reader: AngleReader | None = None
@@ -72,7 +72,7 @@ class Watch:
     @property
     def waiting(self) -> tuple[str, ...]:
         """Channels that were not at rest yet, and so are not watched for contacts."""
-        return self._contact if self.detector is None else self.detector.waiting
+        return self.contact if self.detector is None else self.detector.waiting
 
     @property
     def frozen(self) -> tuple[str, ...]:
@@ -84,7 +84,7 @@ class Watch:
         """What keeps contacts from being seen now, in words; empty where nothing does."""
         if self.fault:
             return f"no contacts: {self.fault}"
-        if not self._contact:
+        if not self.contact:
             return ""
         if not self.rate_hz:
             return f"counting frames for {COUNTED_S:g} s"
@@ -111,8 +111,8 @@ class Watch:
 
     def watch(self, contact: Sequence[str]) -> None:
         """Watch other channels for contacts; what was known of them at rest is learnt anew."""
-        if tuple(contact) != self._contact:
-            self._contact = tuple(contact)
+        if tuple(contact) != self.contact:
+            self.contact = tuple(contact)
             self._know(self.rate_hz)
 
     def step(self, frame: Frame) -> tuple[Contact, ...]:
@@ -144,8 +144,8 @@ class Watch:
             return
         self.stream = replace(self.stream, rate_hz=rate_hz)
         try:
-            if self._contact:
-                self.detector = ContactDetector(self.stream, channels=self._contact)
+            if self.contact:
+                self.detector = ContactDetector(self.stream, channels=self.contact)
             if self._calibration is not None and self._reader is None:
                 self.calibrate(*self._calibration)
         except InputError as fault:

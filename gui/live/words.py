@@ -26,7 +26,7 @@ def silent(status: Status, *, paused: bool = False) -> bool:
     return status.state != "running" or not math.isnan(status.gone_s) or (not paused and status.age_s > limit)
 
 
-def words_of(name: str, status: Status, *, standing: str = "", contacts: str = "", opening: str = "") -> Words:
+def words_of(name: str, status: Status, *, standing: str = "", pace: str = "", contacts: str = "", opening: str = "") -> Words:
     """What to say of a source.
 
     Parameters
@@ -36,6 +36,8 @@ def words_of(name: str, status: Status, *, standing: str = "", contacts: str = "
     status : Status
     standing : str
         Why a log gives nothing now, such as "paused"; empty where it plays.
+    pace : str
+        How fast a log plays; empty where frames come as they are measured.
     contacts : str
         What keeps contacts from being seen; empty where nothing does.
     opening : str
@@ -53,7 +55,7 @@ def words_of(name: str, status: Status, *, standing: str = "", contacts: str = "
         return Words(opening or f"waiting for {name} to say what it sends", "warning")
     if status.stream is None:
         return Words(status.sentence or "not connected", "error" if status.sentence else "warning")
-    parts = [_stream(status, standing), *_counts(status)]
+    parts = [_stream(status, standing or pace), *_counts(status)]
     if status.state == "ended":
         return Words("; ".join([status.sentence or "ended", *parts[1:]]), "error" if status.sentence else "warning")
     if not math.isnan(status.gone_s):
@@ -68,15 +70,15 @@ def words_of(name: str, status: Status, *, standing: str = "", contacts: str = "
     return Words("; ".join(parts), kind)
 
 
-def _stream(status: Status, standing: str) -> str:
+def _stream(status: Status, pace: str) -> str:
     stream = status.stream
     assert stream is not None
     many = len(stream.channels)
     nominal = f" of {stream.rate_hz:.4g}" if stream.rate_hz else ""
     # As it is called, unless that says so already.
     made = ", simulated" if stream.simulated and "simulated" not in stream.name else ""
-    pace = standing or f"{status.rate_hz:.0f} Hz{nominal}"
-    return f"{stream.name}{made}: {many} channel{'s' * (many != 1)}, {pace}"
+    lately = pace or f"{status.rate_hz:.0f} Hz{nominal}"
+    return f"{stream.name}{made}: {many} channel{'s' * (many != 1)}, {lately}"
 
 
 def _counts(status: Status) -> list[str]:

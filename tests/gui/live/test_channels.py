@@ -19,6 +19,11 @@ def test_a_sensor_on_the_second_board(skin):
     assert sensors_of(stream, far) == ("C1", "C2")
 
 
+def test_a_channel_that_measures_something_else_is_none_of_the_skins(skin):
+    stream = Stream("s", (Channel("a", kind="angle"), Channel("b", kind="contact"), Channel("c", kind="strain", sensor="C1")))
+    assert sensors_of(stream, skin) == ("", "C2", "C1")
+
+
 def test_only_what_measures_contact_is_watched(skin):
     kinds = Stream("s", (Channel("a", kind="contact"), Channel("b", kind="strain")))
     assert watched(kinds, ("", ""), None) == ("a",)

@@ -32,8 +32,8 @@ class View:
         self.on[name] = SimpleNamespace(points=np.asarray(points), colour=colour, radius=radius, strength=strength)
         self.calls += 1
 
-    def show(self, name, lines, colour, width):
-        self.on[name] = SimpleNamespace(lines=lines, colour=colour, width=width)
+    def show(self, name, lines, colour, width, *, words):
+        self.on[name] = SimpleNamespace(lines=lines, colour=colour, width=width, words=words)
         self.calls += 1
 
     def hide(self, name):
@@ -72,7 +72,7 @@ def test_it_glows_where_the_sensor_sits(made):
         np.allclose(glow.points.mean(axis=0), (60, 30, 0), atol=12) and (np.abs(glow.points[:, 2]) < 1e-9).all() and 3 <= glow.radius <= 14
     )
     ((piece, line),) = made.flat.on["live C1"].lines
-    assert piece == "P1" and line.shape[1] == 2
+    assert made.flat.on["live C1"].words == "C1" and piece == "P1" and line.shape[1] == 2
 
 
 def test_another_document_or_theme_is_lit_anew_and_sensors_that_are_gone_are_not(made):

@@ -54,3 +54,9 @@ def test_it_ends_with_its_reason():
 
 def test_what_keeps_contacts_from_being_seen_is_added():
     assert words_of("port", status(), contacts="frozen: S1").text.endswith("frozen: S1")
+
+
+def test_a_log_says_its_pace_and_not_a_rate():
+    assert words_of("log", status(), pace="5 times its own pace").text == "skin: 2 channels, 5 times its own pace"
+    assert words_of("log", status(), pace="5 times its own pace", standing="paused").text.endswith("paused")
+    assert words_of("log", Status("opening"), opening="opening log").text == "opening log"
