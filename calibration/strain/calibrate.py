@@ -18,9 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from calibration.strain.curve import Curve, fit_curve
-from calibration.strain.models import MODELS, Model, Samples
-from calibration.strain.prepare import Prepared
-from skinfab.errors import InputError
+from calibration.strain.models import MODELS, BranchModel, Model, Samples
+from calibration.strain.prepare import Fold, Prepared
+from skinfab.errors import InputError, RefusedError
 
 FloatArray = NDArray[np.float64]
 Name = TypeVar("Name", str, int)
@@ -31,6 +31,10 @@ MAX_DEGREE = 6
 WITHIN = 1.02
 #: A model whose error is above this part of a simpler one's did not do better to speak of.
 SAME = 0.95
+#: A sensor that explains less than this part of the angles' variance on the half held out is useless: its error is then more
+#: than 0.71 of that of the answer that never changes. The models taken for real knees are at 0.76 to 0.98, clocks that are
+#: 6 s apart at 0.16.
+MIN_EXPLAINED = 0.5
 #: So many samples are timed, one by one.
 _TIMED = 2000
 
@@ -120,7 +124,7 @@ def calibrate(log: Prepared, *, model: str = "auto", degree: int | None = None) 
         raise InputError("one half of the log has no sample in the range of angles, so that nothing could be held out; record a longer log")
     notes: list[str] = list(log.notes)
     degrees = range(1, MAX_DEGREE + 1) if degree is None else (degree,)
-    folds = log.folds
+    folds = _folds(log, degrees[0])
     tried: dict[str, dict[int, Trial]] = {}
     for name in MODELS:
         found, said = _trials(folds, name, degrees)
@@ -129,7 +133,7 @@ def calibrate(log: Prepared, *, model: str = "auto", degree: int | None = None) 
         elif name == model:
             raise InputError(said)
         else:
-            notes.append(f"model {name} was left out: {said}")
+            notes.append(f"model {name} was left out: in the first half of the log, by which models are chosen, {said}")
     if not tried:
         raise InputError("no model can be fitted to the first half of the log: " + notes[-1])
     wanted = {name: _within_an_error(each) if log.by_trial else _within_a_part(each, WITHIN) for name, each in tried.items()}
@@ -176,6 +180,32 @@ def calibrate(log: Prepared, *, model: str = "auto", degree: int | None = None) 
     )
 
 
+def require_useful(log: Prepared, found: Calibration) -> None:
+    """Refuse a calibration that is useless by its own figures.
+
+    Raises
+    ------
+    RefusedError
+        On the half held out it explains less than `MIN_EXPLAINED` of the variance that the log's angles have.
+    """
+    score = found.scores[found.model.name].held_out_rms_deg
+    # Of the whole log: in its second half the joint may have rested.
+    spread = float(np.std(np.concatenate([run.angle[run.fit] for run in log.runs])))
+    if score**2 <= (1 - MIN_EXPLAINED) * spread**2:
+        return
+    best = min(found.scores, key=lambda name: found.scores[name].held_out_rms_deg)
+    better = found.scores[best].held_out_rms_deg
+    raise RefusedError(
+        f"the calibration is useless: on the half held out {found.model.name} is {score:.1f} degrees wrong, where the answer that never "
+        f"changes is {spread:.1f} wrong; "
+        + (
+            f"take --model {best}, which is {better:.1f} wrong"
+            if better**2 <= (1 - MIN_EXPLAINED) * spread**2
+            else "is it this joint's sensor, were both recorded at once (skinfab angle --shift auto), and did its wires hold?"
+        )
+    )
+
+
 def rms_on(log: Prepared, found: Calibration, other: Prepared) -> dict[str, float]:
     """Error (deg) on another log of every model of a calibration, fitted to the whole of `log`."""
     fitted = {name: MODELS[name].fit(log.runs, degree=score.degree) for name, score in found.scores.items()}
@@ -195,9 +225,29 @@ class Trial:
         return float(np.average(self.squares, weights=self.sizes))
 
 
-def _trials(
-    folds: Sequence[tuple[Sequence[Samples], Sequence[Samples]]], name: str, degrees: Sequence[int]
-) -> tuple[dict[int, Trial], str]:
+def _folds(log: Prepared, degree: int) -> list[Fold]:
+    """Folds that all models can be fitted to, so that all are compared on the same samples.
+
+    A stretch of time may hold the only way back there is within the range of angles; equal parts of the samples that count part it.
+    Where that does not help (trials are not parted), what cannot be fitted is left out, as long as two folds remain.
+    """
+    choices = [log.folds] if log.marked else [log.folds, log.even_folds]
+    for folds in choices:
+        if all(_both_ways(fitted, degree) for fitted, _ in folds):
+            return folds
+    some = [(fitted, held_out) for fitted, held_out in log.folds if _both_ways(fitted, degree)]
+    return some if len(some) > 1 else log.folds
+
+
+def _both_ways(runs: Sequence[Samples], degree: int) -> bool:
+    try:
+        BranchModel.fit(runs, degree=degree)
+    except InputError:
+        return False
+    return True
+
+
+def _trials(folds: Sequence[Fold], name: str, degrees: Sequence[int]) -> tuple[dict[int, Trial], str]:
     """A model judged at each degree that can be fitted to all folds, and why not where none can."""
     tried: dict[int, Trial] = {}
     said = ""
@@ -209,7 +259,7 @@ def _trials(
     return tried, said
 
 
-def _trial(folds: Sequence[tuple[Sequence[Samples], Sequence[Samples]]], name: str, degree: int) -> Trial:
+def _trial(folds: Sequence[Fold], name: str, degree: int) -> Trial:
     """Fit to each fold and judge on what it leaves out."""
     squares, sizes = [], []
     for fitted, held_out in folds:

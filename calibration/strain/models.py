@@ -177,9 +177,7 @@ class BranchModel:
             down.append(Samples(run.time, run.signal, run.angle, run.fit & ~rises))
         for name, part in (("rise", up), ("fall", down)):
             if sum(int(run.fit.sum()) for run in part) <= degree + 1:
-                raise InputError(
-                    f"the readings hardly ever {name}: curves for both branches need a log that goes there and back; take --model poly"
-                )
+                raise InputError(f"the readings hardly ever {name}: curves for both branches need a log that goes there and back")
         return cls(_curve(runs, degree), _curve(up, degree), _curve(down, degree), band)
 
     @classmethod

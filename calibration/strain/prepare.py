@@ -18,6 +18,8 @@ from skinfab.readout.table import Table
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
+#: What is fitted, and what is held out.
+Fold = tuple[tuple[Samples, ...], tuple[Samples, ...]]
 
 #: The cut-off of the paper's filter, Hz.
 CUTOFF_HZ = 5.0
@@ -78,24 +80,28 @@ class Prepared:
         return tuple(k for k in labels if k < PARTS), tuple(k for k in labels if k >= PARTS)
 
     @property
-    def folds(self) -> list[tuple[tuple[Samples, ...], tuple[Samples, ...]]]:
+    def folds(self) -> list[Fold]:
         """Of what is fitted: without each of its trials in turn and that trial, or its parts where there are not two trials."""
         first, _ = self.halves
         if len(first) > 1:
             return [(self.only([k for k in first if k != out]), self.only([out])) for out in first]
+        return self.even_folds
+
+    @property
+    def even_folds(self) -> list[Fold]:
+        """Of what is fitted: without each of as many equal parts of the samples that count, in turn, and that part."""
+        first, _ = self.halves
         runs = self.only(first)
         total = max(sum(int(run.fit.sum()) for run in runs), 1)
         parts, before = [], 0
         for run in runs:
             parts.append((before + np.cumsum(run.fit) - 1) * PARTS // total)
             before += int(run.fit.sum())
-        return [
-            tuple(
-                tuple(replace(run, fit=run.fit & ((part == out) == held)) for run, part in zip(runs, parts, strict=True))
-                for held in (False, True)
-            )  # type: ignore[misc]
-            for out in range(PARTS)
-        ]
+
+        def part_of(out: int, *, held: bool) -> tuple[Samples, ...]:
+            return tuple(replace(run, fit=run.fit & ((part == out) == held)) for run, part in zip(runs, parts, strict=True))
+
+        return [(part_of(out, held=False), part_of(out, held=True)) for out in range(PARTS)]
 
     @property
     def by_trial(self) -> bool:
@@ -147,11 +153,11 @@ def prepare(
         notes.append(f"{table.file}: {count} of {len(time)} rows have no reading or no angle; they are bridged up to {MAX_GAP_S:g} s")
     whole = forward & there
     for name, values in ((signal, readings), (angle, angles)):
-        absurd = spikes(values) & whole
+        absurd = spikes(np.where(whole, time, np.nan), values) & whole
         if count := int(np.count_nonzero(absurd)):
             k = int(np.argmax(absurd))
             notes.append(
-                f"{table.file}, row {k + 1}: {name!r} is {values[k]:g}, out of its neighbours by more than all of the log moves; "
+                f"{table.file}, row {k + 1}: {name!r} is {values[k]:g}, out of its neighbours by more than the rest of the log moves; "
                 + (f"{count} such rows are left out" if count > 1 else "the row is left out")
             )
         whole &= ~absurd

@@ -69,9 +69,10 @@ def run(args: argparse.Namespace) -> int:
     """Fit, judge, write, and say how good it is."""
     if args.limits and not (math.isfinite(sum(args.limits)) and args.limits[0] < args.limits[1]):
         args.wrong_usage(f"--range {args.limits[0]:g} {args.limits[1]:g}: the first must be below the second")
-    from calibration.strain.calibrate import calibrate
+    from calibration.strain.calibrate import calibrate, require_useful
     from calibration.strain.clock import clock_facts, clock_line
     from calibration.strain.prepare import prepare
+    from skinfab.errors import RefusedError
     from skinfab.files import require_apart
     from skinfab.readout.logs.log import read_log_table
     from skinfab.staging import staged_folder
@@ -87,6 +88,12 @@ def run(args: argparse.Namespace) -> int:
     result = facts(table, log, found) | {"clock": clock} | ({"new_tasks": tasks} if tasks else {})
     # What the clocks do comes first: where they do not agree, nothing else counts.
     result["notes"] = [*clock_notes, *said, *result["notes"], *(note for task in tasks for note in task["notes"])]
+    try:
+        require_useful(log, found)
+    except RefusedError:
+        # What was passed over and what the clocks do may say why.
+        steps.say(result["notes"] if not args.json else ())
+        raise
     with staged_folder(args.output) as folder:
         _write(args, folder, table, log, found, result)
     if args.json:

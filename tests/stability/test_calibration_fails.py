@@ -3,12 +3,13 @@
 import numpy as np
 import pytest
 
-from calibration.strain.calibrate import calibrate
+from calibration.strain.calibrate import calibrate, require_useful
 from calibration.strain.clock import clock_facts
 from calibration.strain.curve import fit_curve
 from calibration.strain.models import MODELS, Samples
+from calibration.strain.play import play
 from calibration.strain.prepare import prepare
-from skinfab.errors import InputError
+from skinfab.errors import InputError, RefusedError
 from skinfab.readout.table import Table
 
 TIME = np.arange(3200) / 100
@@ -68,11 +69,56 @@ def test_a_hole_in_the_log_does_not_become_a_motion() -> None:
     assert len(log.runs) == 2
 
 
-def test_noise_alone_is_no_sensor_and_the_figures_say_so() -> None:
+def test_noise_alone_is_no_sensor_and_is_refused() -> None:
     angle = 45 - 40 * np.cos(TIME)
     reading = 1 + 0.01 * np.random.default_rng(0).standard_normal(len(TIME))
-    found = calibrate(prepare(table(angle, reading), signal="U", angle="angle", limits=(10, 80)))
+    log = prepare(table(angle, reading), signal="U", angle="angle", limits=(10, 80))
+    found = calibrate(log)
     assert found.r2 < 0.05 and found.scores[found.model.name].held_out_rms_deg > 15
+    with pytest.raises(RefusedError, match=r"is useless: on the half held out .* is it this joint's sensor"):
+        require_useful(log, found)
+
+
+@pytest.mark.parametrize(("late_s", "useful"), [(0.0, True), (0.3, True), (6.0, False)])
+def test_clocks_that_are_seconds_apart_make_no_sensor(late_s: float, useful: bool) -> None:
+    """The usual script writes down a curve with R2 0.2, and the joint is wrong from then on."""
+    time = np.arange(6000) / 100
+    angle = 45 + 25 * np.sin(1.1 * time + np.sin(0.7 * time)) + 15 * np.sin(2.1 * time)
+    log = prepare(table(angle, 1 + 2e-3 * np.interp(time - late_s, time, angle), time), signal="U", angle="angle", limits=(10, 80))
+    found = calibrate(log)
+    if useful:
+        require_useful(log, found)
+    else:
+        assert found.r2 < 0.5
+        with pytest.raises(RefusedError, match="useless"):
+            require_useful(log, found)
+
+
+def test_an_open_wire_of_50_ms_ruins_the_usual_fit() -> None:
+    time = np.arange(6000) / 100
+    angle = 45 - 40 * np.cos(time)
+    reading = 1 + 2e-3 * angle
+    reading[1000:1005] = 60.0
+    assert np.corrcoef(np.polyval(np.polyfit(angle, reading, 3), angle), reading)[0, 1] ** 2 < 0.1
+    log = prepare(table(angle, reading, time), signal="U", angle="angle", limits=(10, 80))
+    assert calibrate(log).r2 > 0.999 and any("row 1001" in note and "5 such rows are left out" in note for note in log.notes)
+
+
+def test_one_way_back_in_a_fold_does_not_cost_a_model() -> None:
+    """Half a log holds a single descent within the range: folds by time hold it out whole, and curves for both ways cannot be fitted."""
+    time = np.arange(4000) / 100
+    angle = np.interp(time, [0, 8, 9, 17, 20, 28, 29, 37, 40], [0, 90, 0, 90, 90, 0, 90, 0, 0])
+    log = prepare(table(angle, 1 + 2e-3 * play(angle, 4.0), time), signal="U", angle="angle", limits=(10, 80))
+    one_way = 0
+    for fitted, _ in log.folds:
+        try:
+            MODELS["branches"].fit(fitted, degree=1)
+        except InputError:
+            one_way += 1
+    assert one_way == 1
+    found = calibrate(log)
+    assert set(found.scores) == set(MODELS) and not any("left out" in note for note in found.notes)
+    assert calibrate(log, model="branches").model.name == "branches"
 
 
 def test_spikes_that_are_not_finite_are_left_out() -> None:
