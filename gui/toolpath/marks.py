@@ -62,3 +62,9 @@ def mark(
                 if ex * ex + ey * ey <= r * r:
                     marks[i, j] = step[k]
                     layers[i, j] = layer[k]
+
+
+def warm() -> None:
+    """Compile it, or load what was compiled before: some tenths of a second that the window should not stand still for."""
+    nothing = np.zeros(0, dtype=np.int64)
+    mark(np.zeros((0, 2, 2)), np.zeros(0), nothing, nothing, np.zeros((1, 1), dtype=np.int32), np.zeros((1, 1), dtype=np.int8))

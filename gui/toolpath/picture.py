@@ -85,7 +85,8 @@ class PathPicture(Surface):
         self._moved = False
         self._pixels_of: tuple[NDArray[np.uint32], NDArray[np.uint32]] | None = None  # done, to come
         self._marks = np.zeros((0, 0), dtype=np.int32)
-        self._reach: Float = np.zeros(0)
+        self._ends: Float = np.zeros((2, 0, 2))
+        self._spare = 0.0
         self._done = -1
         super().__init__(master, still=self._draw_still, moving=self._draw_moving)
         bind = self.widget.bind
@@ -149,10 +150,9 @@ class PathPicture(Surface):
         self._done = done
         if first == last:
             return
-        points = self.plane.to_px(line.parts[first:last].reshape(-1, 2))
-        spare = self._reach.max() + 2
-        (x0, y0), (x1, y1) = points.min(axis=0) - spare, points.max(axis=0) + spare
-        box = (float(x0), float(y0), float(x1), float(y1))
+        x, y = self._ends[:, first:last]  # a row each: numpy is slow across pairs
+        spare = self._spare
+        box = (float(x.min()) - spare, float(y.min()) - spare, float(x.max()) + spare, float(y.max()) + spare)
         left, top, right, bottom = self._pixels(box)
         if right > left and bottom > top:
             self._compose(slice(top, bottom), slice(left, right))
@@ -230,14 +230,16 @@ class PathPicture(Surface):
         if self._marks.shape != (height, width):
             self._marks = np.empty((height, width), dtype=np.int32)
         px = self.plane.to_px(line.parts)
+        self._ends = np.ascontiguousarray(np.moveaxis(px, 2, 0))
         px[..., 1] = height - px[..., 1]
         layers = np.empty((height, width), dtype=np.int8)
         # As they are drawn (`_width`), and one pixel more for the soft edge.
         least = np.array([self._width(role, 0.0) for role in ROLE_NAMES])[line.role]
         inked = np.isin(line.role, [DRAWN.index(role) for role in DRAWN if role.startswith("print")])
         widths = np.where(inked, np.maximum(line.width * self.plane.scale, least), least)
-        self._reach = widths[line.part_step] / 2 + 1.0
-        mark(px, self._reach, line.role[line.part_step], line.part_step, self._marks, layers)
+        reach = widths[line.part_step] / 2 + 1.0
+        self._spare = float(reach.max(initial=0.0)) + 2
+        mark(px, reach, line.role[line.part_step], line.part_step, self._marks, layers)
 
     def _draw_moving(self, pen: Pen) -> None:
         scene, now = self.scene, self.now

@@ -21,6 +21,7 @@ from gui.theme import Theme
 from gui.toolpath.choice import ARCS, ArcsChoice
 from gui.toolpath.findings import SOURCE, problems_of
 from gui.toolpath.listing import Listing
+from gui.toolpath.marks import warm
 from gui.toolpath.picture import PathPicture, Scene, colours
 from gui.toolpath.settings_list import SettingsList
 from gui.toolpath.timeline import Instant, Timeline, legend, timeline
@@ -284,7 +285,9 @@ class ToolPathTab(ttk.Frame):
 def _plan(shelf: ProfileShelf, skin: Skin, piece: str, arcs: Arcs | None) -> Planned:
     used = shelf.of(skin)
     program = piece_program(skin, piece, printer=used.printer, material=used.material, arcs=arcs)
-    return Planned(skin, program, timeline(program))
+    line = timeline(program)
+    warm()
+    return Planned(skin, program, line)
 
 
 def _judge(planned: Planned, shelf: ProfileShelf) -> object:

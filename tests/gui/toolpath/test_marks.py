@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from gui.toolpath.marks import mark
+from gui.toolpath.marks import mark, warm
 
 
 def marked(parts, reach, layer, step, shape=(30, 40)):
@@ -39,3 +39,12 @@ def test_it_is_the_earliest_step_of_the_highest_layer(seed):
 def test_nothing_is_marked_where_there_is_nothing():
     assert (marked(np.zeros((0, 2, 2)), [], np.zeros(0, dtype=int), np.zeros(0, dtype=int)) == -1).all()
     assert (marked([[[100, 100], [200, 100]]], [2], [0], [0]) == -1).all()
+
+
+def test_it_is_compiled_once_for_what_the_picture_gives_it(marlin):
+    warm()
+    known = len(mark.signatures)
+    px = np.ascontiguousarray(marlin.parts)
+    marks, layers = np.empty((5, 5), dtype=np.int32), np.empty((5, 5), dtype=np.int8)
+    mark(px, np.ones(len(px)), marlin.role[marlin.part_step], marlin.part_step, marks, layers)
+    assert len(mark.signatures) == known
