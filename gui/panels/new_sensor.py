@@ -66,8 +66,10 @@ class NewSensorPanel(ttk.Frame):
         self.picture.bind("<Configure>", lambda event: self._draw())
         self._fields = ttk.Frame(self, name="fields")
         self._fields.pack(fill="x")
+        self._drawn_for = ""
         self.restyle(theme)
         self._show()
+        session.listen("skin", self._other_material)
 
     def pattern(self) -> Pattern:
         """The one that is chosen, with the bead, gap and pad of the document's material.
@@ -124,6 +126,12 @@ class NewSensorPanel(ttk.Frame):
             self._draw()
 
         return take
+
+    def _other_material(self) -> None:
+        """Bead and gap may be others."""
+        if self._session.skin is not None and self._session.skin.material != self._drawn_for:
+            self._drawn_for = self._session.skin.material
+            self._draw()
 
     def _draw(self) -> None:
         """The stroke as it is printed, as large as it fits."""

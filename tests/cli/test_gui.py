@@ -1,0 +1,108 @@
+"""`skinfab gui` as a person starts it: a real process, ended in every way there is."""
+
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from gui.state.autosave import left_over
+
+ROOT = Path(__file__).parents[2]
+
+
+def start(tmp_path, *arguments, display=None, **more):
+    environment = {k: v for k, v in os.environ.items() if k not in ("DISPLAY", "WAYLAND_DISPLAY")}
+    environment |= {"SKINFAB_STATE": str(tmp_path / "state"), "PYTHONPATH": str(ROOT)} | more
+    if display is not None:
+        environment["DISPLAY"] = display
+    command = [sys.executable, "-c", "import sys; from skinfab.cli.main import main; sys.exit(main(sys.argv[1:]))", "gui"]
+    return subprocess.Popen([*command, *map(str, arguments)], env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+
+def ended(process, timeout=30):
+    out, err = process.communicate(timeout=timeout)
+    return process.returncode, out, err
+
+
+@pytest.fixture(scope="module")
+def display():
+    if shutil.which("Xvfb") is None:
+        if os.environ.get("CI"):
+            pytest.fail("Xvfb is not installed")
+        pytest.skip("Xvfb is not installed; tools/setup.sh installs it as root")
+    read, write = os.pipe()
+    command = ["Xvfb", "-displayfd", str(write), "-screen", "0", "1280x800x24", "-nolisten", "tcp"]
+    server = subprocess.Popen(command, pass_fds=[write], stderr=subprocess.DEVNULL)
+    os.close(write)
+    with os.fdopen(read) as pipe:
+        number = pipe.readline().strip()
+    yield f":{number}"
+    server.terminate()
+    server.wait(timeout=10)
+
+
+def test_without_a_screen_it_is_one_sentence(tmp_path):
+    status, out, err = ended(start(tmp_path))
+    assert status == 1 and out == "" and err.startswith("skinfab: there is no screen") and err.count("\n") == 1 and "DISPLAY" in err
+
+
+@pytest.mark.parametrize(("name", "said"), [("gone.obj", "no such file"), ("", "is a folder")])
+def test_a_file_that_is_not_there_is_said_before_a_window_opens(tmp_path, name, said):
+    status, _, err = ended(start(tmp_path, tmp_path / name))
+    assert status == 1 and said in err and err.count("\n") == 1
+
+
+def test_a_state_folder_that_cannot_be_made_is_one_sentence(tmp_path, display):
+    (tmp_path / "file").write_text("")
+    status, _, err = ended(start(tmp_path, display=display, SKINFAB_STATE=str(tmp_path / "file" / "state")))
+    assert status == 1 and err.count("\n") == 1 and "file" in err
+
+
+#: Opens a window on a document with unsaved work, and says when its copy is written.
+WORK = """
+import sys, tkinter as tk
+from dataclasses import replace
+from pathlib import Path
+import gui.app
+made = []
+class Watched(gui.app.App):
+    def __init__(self, root, path=None, **options):
+        super().__init__(root, path, **options)
+        root.after(100, self.work, root)
+    def work(self, root):
+        if self.session.skin is None:
+            return root.after(50, self.work, root)
+        self.session.do("another seed", replace(self.session.skin, seed=42))
+        self.autosave.settle()
+        print("kept", flush=True)
+gui.app.App = Watched
+from gui.dialogs.open_mesh import MeshChoice
+gui.app.Dialogs.how_to_open = lambda self, facts: MeshChoice(facts.units, False)
+from skinfab.cli.main import main
+if __name__ == "__main__":
+    sys.exit(main(["gui", sys.argv[1]]))
+"""
+
+
+@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM, signal.SIGINT])
+def test_whatever_ends_it_the_work_is_there_at_the_next_start(tmp_path, display, number):
+    (tmp_path / "work.py").write_text(WORK)
+    environment = os.environ | {"SKINFAB_STATE": str(tmp_path / "state"), "PYTHONPATH": str(ROOT), "DISPLAY": display}
+    command = [sys.executable, str(tmp_path / "work.py"), str(ROOT / "meshes" / "cube.obj")]
+    process = subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    assert process.stdout.readline() == "kept\n", process.stderr.read()
+    began = time.monotonic()
+    process.send_signal(number)
+    status, _, err = ended(process)
+    assert time.monotonic() - began < 10
+    if number == signal.SIGKILL:
+        assert status == -signal.SIGKILL
+    else:
+        assert status == 130 and err == "skinfab: interrupted; nothing half-written was left\n"
+    (left,) = left_over(tmp_path / "state" / "autosave")
+    assert left.load().seed == 42 and left.path is None
