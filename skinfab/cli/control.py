@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 #: Must be `calibration.control.controller.LAWS`, which is not imported for a help text.
 LAWS = ("p", "branches", "full")
+#: Of the simulated board; a real one's is measured.
 RATE_HZ = 100.0
 #: What a run leaves.
 FILES = ("control.csv", "control.json", "control.png")
@@ -59,21 +60,16 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 def run(args: argparse.Namespace) -> int:
     """Judge the gain, control, write, and say how well it went."""
     _require_fitting_options(args)
-    from calibration.control.margin import judged
     from skinfab.files import require_apart
 
     log = None if args.what == "simulator" else args.what
     require_apart(args.output, FILES, [path for path in (log, args.human, args.robot) if path])
     human, robot = _inputs(args)
-    margin = judged(robot, args.controller, args.gain, lag_s=args.lag, delay_s=args.delay, period_s=1 / RATE_HZ, force=args.force)
-    if not args.json:
-        print(margin.sentence)
-    if margin.ratio <= 1:
-        steps.say(["the gain is beyond what the loop takes, and was forced: expect the joint to swing"], kind="warning")
     if args.port is not None:
         from skinfab.cli.control_port import run_port
 
-        return run_port(args, human, robot, margin)
+        return run_port(args, human, robot)
+    margin = judge(args, robot, period_s=1 / RATE_HZ)
     runs, notes = _simulated(args, human, robot, margin)
     result = facts(args, runs, margin, notes)
     _write(args, runs, result)
@@ -85,6 +81,18 @@ def run(args: argparse.Namespace) -> int:
         print(line)
     print(f"{args.output}: {', '.join(FILES)}")
     return 0
+
+
+def judge(args: argparse.Namespace, robot: Input, *, period_s: float) -> Margin:
+    """The margin of the gain at this period, told; or that it is none."""
+    from calibration.control.margin import judged
+
+    margin = judged(robot, args.controller, args.gain, lag_s=args.lag, delay_s=args.delay, period_s=period_s, force=args.force)
+    if not args.json:
+        print(margin.sentence)
+    if margin.ratio <= 1:
+        steps.say(["the gain is beyond what the loop takes, and was forced: expect the joint to swing"], kind="warning")
+    return margin
 
 
 def _require_fitting_options(args: argparse.Namespace) -> None:

@@ -18,11 +18,12 @@ if TYPE_CHECKING:
     from calibration.control.margin import Margin
 
 
-def run_port(args: argparse.Namespace, human: Input, robot: Input, margin: Margin) -> int:
-    """Control for `args.seconds`, write what happened, and say how long commands took."""
+def run_port(args: argparse.Namespace, human: Input, robot: Input) -> int:
+    """Measure how often the board sends, judge the gain, control for `args.seconds`, write what happened, and say how it went."""
     from calibration.control.controller import JointController
     from calibration.control.loop import run_loop
-    from skinfab.cli.control import RATE_HZ
+    from calibration.control.rate import measured_rate
+    from skinfab.cli.control import judge
     from skinfab.cli.record import outage_notes, outages
     from skinfab.readout.priority import real_time
     from skinfab.readout.serial_port import SerialPort
@@ -31,14 +32,18 @@ def run_port(args: argparse.Namespace, human: Input, robot: Input, margin: Margi
     with real_time() as granted, SerialPort(args.port) as port:
         stream = port.stream
         human, robot = (type(each)(each.calibration, stream.index(each.calibration.signal)) for each in (human, robot))
-        period = 1 / (stream.rate_hz or RATE_HZ)
+        rate = measured_rate(port)
+        told = _rate_told(stream.rate_hz, rate)
+        if not args.json:
+            steps.say(told)
+        margin = judge(args, robot, period_s=1 / rate)
         options: dict[str, Any] = {"law": args.controller, "gain": margin.gain, "lag_s": args.lag, "delay_s": args.delay}
         began = time.time()
         with _commands(args.commands) as send:
-            loop = run_loop(port, JointController(human, robot, **options, period_s=period), send, seconds=args.seconds)
+            loop = run_loop(port, JointController(human, robot, **options, period_s=1 / rate), send, seconds=args.seconds)
         counts, gone = port.counts, outages(port, began, time.time())
     result = facts(args, loop, margin, simulated=stream.simulated)
-    result |= {"real_time": granted, "outages": gone}
+    result |= {"rate_hz": rate, "real_time": granted, "outages": gone, "notes": told}
     result["counts"] = {"lost": counts.lost, "bad": counts.bad, "late": counts.late, "reopened": counts.reopened}
     _write(args, loop, result)
     if args.json:
@@ -47,7 +52,8 @@ def run_port(args: argparse.Namespace, human: Input, robot: Input, margin: Margi
     steps.say(outage_notes(args.port, gone))
     taken = result["latency_ms"]
     print(
-        f"{result['commands']} commands in {args.seconds:g} s: from frame to command {taken['median']:.2f} ms, worst {taken['worst']:.2f}; "
+        f"{result['commands']} commands in {args.seconds:g} s to {rate:.4g} frames a second: from frame to "
+        f"command {taken['median']:.2f} ms, worst {taken['worst']:.2f}; "
         f"held or stopped {100 * result['held_or_stopped']:.0f} % of them; {counts.lost} frames lost, {counts.bad} bad; "
         f"{'with' if granted else 'without'} real-time priority"
         if taken
@@ -55,6 +61,21 @@ def run_port(args: argparse.Namespace, human: Input, robot: Input, margin: Margi
     )
     print(f"{args.output}: control.csv, control.json, control.png")
     return 0
+
+
+def _rate_told(said_hz: float, rate_hz: float) -> list[str]:
+    """Where a stream's own word is not what was measured.
+
+    Examples
+    --------
+    >>> _rate_told(100.0, 50.2), _rate_told(100.0, 99.1), _rate_told(0.0, 50.2)
+    (['the board sends 50.2 frames a second, and says 100; what was measured is used'], [], [])
+    """
+    from calibration.control.rate import RATE_PART
+
+    if not said_hz or abs(rate_hz - said_hz) <= RATE_PART * said_hz:
+        return []
+    return [f"the board sends {rate_hz:.3g} frames a second, and says {said_hz:g}; what was measured is used"]
 
 
 @contextmanager

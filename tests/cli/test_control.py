@@ -11,6 +11,7 @@ import pytest
 
 from calibration.control.controller import LAWS
 from calibration.control.loop import FingerBoard
+from calibration.control.margin import critical_gain
 from calibration.control.protocols import PAPER_DEG, uniform
 from calibration.finger.logs import calibrated
 from calibration.finger.simulated import HUMAN, ROBOT
@@ -118,7 +119,28 @@ def test_port(calibrations: dict[str, str], tmp_path: Path, capsys: pytest.Captu
     assert result["commands"] + result["passed_over"] > 130 and 0 < result["latency_ms"]["median"] <= result["latency_ms"]["worst"]
     commands = [line for line in received if not line.startswith(b"end")]
     assert len(commands) == result["commands"] + 1 and float(commands[-1]) == 0.0
-    assert abs(board.robot[120] - uniform().angle[120]) < 10
+    assert abs(board.robot[220] - uniform().angle[220]) < 10 and 95 < result["rate_hz"] < 105
+
+
+def test_a_board_of_another_rate_is_taken_as_it_is(
+    calibrations: dict[str, str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """It says 100 Hz and sends 50: the margin is that of 20 ms; a gain that only 100 Hz would take is refused."""
+    words = ["--human", calibrations["human_branches"], "--robot", calibrations["robot_branches"], "--seconds", "0.5"]
+    board = FingerBoard(uniform(length_s=5.0), seed=0)
+    with PtyServer(board.stream, board, rate_hz=50.0) as device:
+        assert main(["control", "--port", str(device.path), *words, "-o", str(tmp_path / "o"), "--json"]) == 0
+    result = json.loads(capsys.readouterr().out)
+    assert result["rate_hz"] == pytest.approx(50, rel=0.05)
+    (note,) = result["notes"]
+    assert "frames a second, and says 100; what was measured is used" in note
+    gain = {hz: critical_gain(lag_s=0.1, delay_s=0.05, period_s=1 / hz, play=True).gain for hz in (48.0, 52.0, 100.0)}
+    assert gain[48.0] < result["margin"]["swings_from_per_s"] < gain[52.0] < gain[100.0]
+    board = FingerBoard(uniform(length_s=5.0), seed=0)
+    with PtyServer(board.stream, board, rate_hz=50.0) as device:
+        words += ["--gain", str(0.98 * gain[100.0])]
+        assert main(["control", "--port", str(device.path), *words, "-o", str(tmp_path / "p")]) == 3
+    assert "is beyond what the loop takes" in capsys.readouterr().err and not (tmp_path / "p").exists()
 
 
 def test_what_was_out_of_range_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
