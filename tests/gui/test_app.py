@@ -5,6 +5,7 @@ import json
 import multiprocessing
 import time
 import tkinter as tk
+from dataclasses import replace
 from tkinter import ttk
 
 import numpy as np
@@ -21,8 +22,8 @@ def start(display, tmp_path, monkeypatch):
     monkeypatch.setenv("SKINFAB_STATE", str(tmp_path / "state"))
     opened = []
 
-    def open_window(path=None):
-        answers = Answers(give={"Unsaved work": "Do not save"})
+    def open_window(path=None, **give):
+        answers = Answers(give={"Unsaved work": "Do not save"} | {title.replace("_", " "): answer for title, answer in give.items()})
         app = App(tk.Tk(), path, dialogs=answers)
         opened.append(app)
         person = Person(app, answers)
@@ -203,8 +204,6 @@ def test_a_window_that_is_closed_at_once_leaves_nothing_behind(start, capfd):
 
 
 def test_an_interrupt_ends_it_without_a_question_and_keeps_the_work(start):
-    from dataclasses import replace
-
     person = start()
     person.open(MESHES / "cube.obj")
     person.session.do("another seed", replace(person.skin, seed=5))
@@ -257,3 +256,45 @@ def test_the_window_answers_while_work_goes_on(start):
     assert len(waits) > 5 and person.view3d.camera is not camera
     assert sorted(waits)[len(waits) // 2] < 0.1
     person.wait()
+
+
+@pytest.fixture
+def crashed(start):
+    """A run that ended with unsaved work on the cube, of a process that is gone; its folder of copies."""
+    person = start()
+    person.open(MESHES / "cube.obj")
+    person.session.do("another seed", replace(person.skin, seed=42))
+    person.app.abandon()
+    folder = person.app.desk.state / "autosave"
+    for file in list(folder.iterdir()):
+        file.rename(folder / f"999999999-{file.name.split('-')[1]}")
+    assert len(list(folder.glob("*.skin"))) == 1
+    return folder
+
+
+def test_what_a_crash_has_left_is_offered_and_opened_as_unsaved(start, crashed):
+    person = start(MESHES / "dodecahedron.obj", Unsaved_work_was_kept="Open the copy")
+    person.wait(lambda: person.skin is not None and person.app.runner.job is None)
+    assert "a skin that was never saved" in person.answers.asked[0]
+    assert person.skin.seed == 42 and person.session.dirty and person.session.path is None
+    assert person.app.autosave.settle() and not list(crashed.glob("999999999-*"))
+    assert len(list(crashed.glob("*.skin"))) == 1, "what is still unsaved is still kept"
+
+
+def test_it_can_wait_or_be_thrown_away(start, crashed):
+    for answer, left in (("Later", 1), ("Throw it away", 0)):
+        person = start(MESHES / "dodecahedron.obj", Unsaved_work_was_kept=answer)
+        person.wait(lambda person=person: person.skin is not None)
+        assert person.skin.source.file == "dodecahedron.obj" and len(list(crashed.glob("*.skin"))) == left
+        person.app.close()
+    person = start(MESHES / "cube.obj")
+    person.wait(lambda: person.skin is not None)
+    assert person.answers.asked == ["how_to_open cube.obj"]
+
+
+def test_a_damaged_copy_is_a_sentence(start, crashed):
+    (copy,) = crashed.glob("*.skin")
+    copy.write_bytes(b"PK")
+    person = start(Unsaved_work_was_kept="Open the copy")
+    person.wait(lambda: person.session.problems)
+    assert "not a whole skin document" in person.problems()[0] and person.skin is None and copy.exists()
