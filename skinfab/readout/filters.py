@@ -5,8 +5,8 @@ from __future__ import annotations
 from functools import cached_property
 
 import numpy as np
+import scipy  # its parts when they are used: scipy.signal takes half a second, which one who only reads a calibration need not wait
 from numpy.typing import NDArray
-from scipy import signal
 
 from skinfab.errors import InputError
 
@@ -42,7 +42,7 @@ class Lowpass:
                 "sample faster or lower the cut-off"
             )
         self.cutoff_hz, self.rate_hz, self.order = cutoff_hz, rate_hz, order
-        self._sections = signal.butter(order, cutoff_hz, fs=rate_hz, output="sos")
+        self._sections = scipy.signal.butter(order, cutoff_hz, fs=rate_hz, output="sos")
 
     @property
     def shortest(self) -> int:
@@ -59,14 +59,14 @@ class Lowpass:
         """
         if len(values) < self.shortest:
             raise InputError(f"{len(values)} samples are too few for a cut-off of {self.cutoff_hz:g} Hz; {self.shortest} are needed")
-        out: FloatArray = signal.sosfiltfilt(self._sections, values, axis=0, padtype="even", padlen=self.shortest - 1)
+        out: FloatArray = scipy.signal.sosfiltfilt(self._sections, values, axis=0, padtype="even", padlen=self.shortest - 1)
         return out
 
     @cached_property
     def delay_s(self) -> float:
         """Of the causal filter for slow signals: its group delay at 0 Hz."""
-        b, a = signal.butter(self.order, self.cutoff_hz, fs=self.rate_hz)
-        _, delay = signal.group_delay((b, a), w=[1e-3 * self.cutoff_hz], fs=self.rate_hz)
+        b, a = scipy.signal.butter(self.order, self.cutoff_hz, fs=self.rate_hz)
+        _, delay = scipy.signal.group_delay((b, a), w=[1e-3 * self.cutoff_hz], fs=self.rate_hz)
         return float(delay[0]) / self.rate_hz
 
     def causal(self) -> CausalLowpass:
@@ -91,7 +91,7 @@ class CausalLowpass:
     def step(self, values: FloatArray) -> FloatArray:
         """The filtered values (c,) of the next sample (c,)."""
         if self._state is None:
-            self._state = signal.sosfilt_zi(self._sections)[:, :, None] * values
-        out, self._state = signal.sosfilt(self._sections, values[None], axis=0, zi=self._state)
+            self._state = scipy.signal.sosfilt_zi(self._sections)[:, :, None] * values
+        out, self._state = scipy.signal.sosfilt(self._sections, values[None], axis=0, zi=self._state)
         first: FloatArray = out[0]
         return first

@@ -3,6 +3,8 @@
 import gc
 import json
 import multiprocessing
+import subprocess
+import sys
 import time
 import tkinter as tk
 from dataclasses import replace
@@ -275,7 +277,7 @@ def crashed(start):
 def test_what_a_crash_has_left_is_offered_and_opened_as_unsaved(start, crashed):
     person = start(MESHES / "dodecahedron.obj", Unsaved_work_was_kept="Open the copy")
     person.wait(lambda: person.skin is not None and person.app.runner.job is None)
-    assert "a skin that was never saved" in person.answers.asked[0]
+    assert "work that had no file yet" in person.answers.asked[0]
     assert person.skin.seed == 42 and person.session.dirty and person.session.path is None
     assert person.app.autosave.settle() and not list(crashed.glob("999999999-*"))
     assert len(list(crashed.glob("*.skin"))) == 1, "what is still unsaved is still kept"
@@ -298,3 +300,10 @@ def test_a_damaged_copy_is_a_sentence(start, crashed):
     person = start(Unsaved_work_was_kept="Open the copy")
     person.wait(lambda: person.session.problems)
     assert "not a whole skin document" in person.problems()[0] and person.skin is None and copy.exists()
+
+
+def test_the_first_window_waits_for_nothing_that_it_does_not_show():
+    slow = ("scipy.signal", "scipy.stats", "matplotlib.pyplot", "pandas")
+    code = f"import sys, gui.app; print([name for name in {slow!r} if name in sys.modules])"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=MESHES.parent, check=True)
+    assert done.stdout == "[]\n"
