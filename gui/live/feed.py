@@ -146,6 +146,7 @@ class Feed:
         self._given: deque[tuple[float, int]] = deque()
         self._frames = 0
         self._recorder: Recorder | None = None
+        self._recorded_by: Recorder | None = None
         #: How the recording goes, and why it ended before it was to; None and empty where there is none.
         self.recording: State | None = None
         self.recording_fault = ""
@@ -222,7 +223,12 @@ class Feed:
         """Add all frames from now on to a file, until `end_recording`."""
         self._recorded.clear()
         self.recording_fault = ""
-        self._recorder = recorder
+        self._recorder = self._recorded_by = recorder
+
+    @property
+    def recorded(self) -> int:
+        """Frames in the last recording so far."""
+        return self._recorded_by.frames if self._recorded_by is not None else 0
 
     def end_recording(self) -> None:
         """Close the file, within a quarter of a second."""

@@ -124,11 +124,11 @@ class LiveTab(ttk.Frame):
         before, self.feed = self.feed, None
         if before is not None:
             before.close()
-            self._finish_record(before)
         self._stream, self._newest, self._held = None, None, None
-        self._record_name = ""
         self.row.paused.set(False)
         self.row.ended("")
+        if before is not None:
+            self._finish_record(before)  # its words stay
         self.row.enable(record=False, pause=False)
         self.lights.show({})
         self.lights.say("")
@@ -254,7 +254,7 @@ class LiveTab(ttk.Frame):
         if not self._record_name:
             return
         name, self._record_name = self._record_name, ""
-        frames = feed.recording.frames if feed.recording is not None else 0
+        frames = feed.recorded
         self.row.ended(f"{name}: {frames:,} frames recorded" if frames else f"{name}: no frame came; no file was left")
         if feed.recording_fault:
             self._complain(feed.recording_fault)
