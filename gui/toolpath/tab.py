@@ -280,6 +280,7 @@ class ToolPathTab(ttk.Frame):
     def _stop(self, event: tk.Event) -> None:
         if event.widget is self:
             self._cancel_timer()
+            self._wanted = self.planned = None  # answers that come later are for nobody
 
 
 def _plan(shelf: ProfileShelf, skin: Skin, piece: str, arcs: Arcs | None) -> Planned:
