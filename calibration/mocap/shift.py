@@ -55,9 +55,10 @@ def find_shift(time: FloatArray, reading: FloatArray, capture_time: FloatArray, 
     lags = (since + length - when - bent.size * STEP_S, since + read.size * STEP_S - length - when)
     found = find_lag([Pair(when, bent, known, since, read, counts)], lags, least_overlap_s=length)
     if found.others_s:
-        others = ", ".join(f"{each:.2f}" for each in found.others_s[:4])
+        # Those nearest to 0 first: two recordings are mostly begun within a few seconds.
+        *some, last = (f"{each:.2f}" for each in sorted((found.lag_s, *found.others_s), key=abs)[:5])
         raise InputError(
-            f"the movement repeats, so that shifts of {found.lag_s:.2f} and {others} s fit alike; give --shift with the one you know to be "
+            f"the movement repeats, so that shifts of {', '.join(some)} and {last} s fit alike; give --shift with the one you know to be "
             "near, or record again and bend the joint a few times quickly and irregularly at the start"
         )
     if found.high_s - found.low_s > 2 * WIDEST_S:

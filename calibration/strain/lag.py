@@ -42,6 +42,8 @@ _NEAR_S = 0.5
 _ERRORS, _TAIL, _ALIKE = 2.0, 0.975, 1e-3
 #: Lags nearer to each other than this part of a stroke are one: a valley of what is left unexplained may have ripples.
 _ONE = 0.5
+#: A half-width of slack that leaves less than this part of what is in common is not judged.
+_USED_UP = 0.5
 #: So many other valleys are looked at.
 _RIVALS = 20
 
@@ -107,10 +109,15 @@ def find_lag(pairs: Sequence[Pair], lags: tuple[float, float], *, least_overlap_
     grid = np.arange(round(lags[0] / STEP_S), round(lags[1] / STEP_S) + 1)
     powers = [[powers_of(pair, width, low, high) for pair in pairs] for width in widths]
     unexplained = np.empty((len(widths), len(grid)))
+    least_n = np.zeros(0)
     for row, each in zip(unexplained, powers, strict=True):
         sums = total([Sums.of(pair, at, grid) for pair, at in zip(pairs, each, strict=True)])
-        enough = sums.n * STEP_S >= max(least_overlap_s, 2 * DEGREE * STEP_S)
-        row[:] = np.where(enough, sums.unexplained(), np.inf)
+        if not least_n.size:
+            # What is in common is told without slack: behind it a movement counts only from when the slack was used up, and to
+            # ask as much of that would leave the lag to slack too narrow (0.1 s wrong behind 9 degrees at an overlap of 0.55).
+            overlap = np.maximum(max(least_overlap_s / STEP_S, 2 * DEGREE), sums.n)
+            least_n = np.where(sums.n == overlap, _USED_UP * overlap, np.inf)
+        row[:] = np.where(sums.n >= least_n, sums.unexplained(), np.inf)
     profile = least(unexplained)
     valleys = _valleys(profile)
     best = min(valleys, key=lambda k: float(profile[k]), default=int(np.argmin(profile)))

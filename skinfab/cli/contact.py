@@ -21,6 +21,9 @@ if TYPE_CHECKING:
     from skinfab.wiring import Wire
 
 SIMULATOR = "simulator"
+#: Why a channel could not be watched; and so many are named.
+_UNWATCHED = {"silent": "never read anything", "constant": "read one value all the time", "never at rest": "was never at rest"}
+_NAMED = 4
 #: Must be the names of `calibration.contact.objects.OBJECTS`, which is not imported for a help text.
 OBJECTS = ("cube", "cylinder", "dodecahedron", "grip", "cup")
 
@@ -90,6 +93,7 @@ def run(args: argparse.Namespace) -> int:
         notes: list[str] = []
     else:
         sessions, notes = _watched(args) if kind == "port" else _logged(args)
+    _require_watched(sessions)
     from calibration.contact.table import contact_table
 
     tables = {name: contact_table([(each.recording, each.found) for each in trials]) for name, trials in sessions.items()}
@@ -167,6 +171,22 @@ def _logged(args: argparse.Namespace) -> tuple[dict[str, list[Trial]], list[str]
             trials.append(Trial(log.file, log.sha256, log.recording, found))
         progress(1.0, "done")
     return {trials[0].recording.stream.name or trials[0].name: trials}, notes
+
+
+def _require_watched(sessions: dict[str, list[Trial]]) -> None:
+    """Refuse what nothing could be watched in: that no contact was found there says nothing."""
+    from calibration.contact.rest import STILL_S
+    from skinfab.errors import InputError
+
+    health = [(each.name, channel) for trials in sessions.values() for each in trials for channel in each.found.channels]
+    if any(channel.state in ("", "frozen") for _, channel in health):
+        return
+    states = list(dict.fromkeys(f"{channel.channel} of {name} {_UNWATCHED[channel.state]}" for name, channel in health))
+    more = f", and {len(states) - _NAMED} more" if len(states) > _NAMED else ""
+    raise InputError(
+        f"no channel could be watched: {', '.join(states[:_NAMED])}{more}; check the wires, and leave the object alone for the first "
+        f"{STILL_S:g} s"
+    )
 
 
 def _simulated(args: argparse.Namespace) -> tuple[dict[str, list[Trial]], dict[str, dict[str, list[Score]]]]:
@@ -254,7 +274,8 @@ def _lines(sessions: dict[str, list[Trial]], tables: dict[str, tuple[Row, ...]],
             change = "-" if math.isnan(row.change) else f"{100 * row.change:+.1f} %"
             touched = "-" if math.isnan(row.touched) else f"{row.touched:.4g}{spread}"
             state = f"  ({row.state})" if row.state else ""
-            lines.append(f"  {row.channel:10s}{row.r0:10.4g}  {touched + ' ' + row.unit:22s}{change:>10s}{row.contacts:10d}{state}")
+            rest = "-" if math.isnan(row.r0) else f"{row.r0:.4g}"
+            lines.append(f"  {row.channel:10s}{rest:>10s}  {touched + ' ' + row.unit:22s}{change:>10s}{row.contacts:10d}{state}")
     for name, each in result.get("evaluation", {}).items():
         lines += [f"{name}: {detector:16s}{_judged(of)}" for detector, of in each.items()]
     return lines

@@ -154,6 +154,17 @@ def test_a_log_that_is_too_short_is_named(tmp_path: Path, capsys: pytest.Capture
     assert "short.csv: 20 frames are too few" in capsys.readouterr().err
 
 
+def test_a_log_in_which_nothing_can_be_watched_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    time = np.arange(1500) / 100
+    moving = 100 + 40 * np.sin(time) + 5 * np.sin(7 * time)
+    rows = "\n".join(f"{t},{a:.3f},7," for t, a in zip(time.tolist(), moving.tolist(), strict=True))
+    (tmp_path / "a.csv").write_text(f"time,S1,S2,S3\n{rows}\n")
+    assert main(["contact", str(tmp_path / "a.csv"), "-o", str(tmp_path / "out")]) == 1
+    said = capsys.readouterr().err
+    assert "no channel could be watched: S1 of a.csv was never at rest, S2 of a.csv read one value all the time, S3 of a.csv never" in said
+    assert not (tmp_path / "out").exists()
+
+
 def test_a_port_is_watched_and_told_as_it_comes(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     log = simulate("grip", seed=2).recording
     short = [log.frame(k) for k in range(900)]
