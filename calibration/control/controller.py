@@ -168,14 +168,15 @@ class JointController:
 
 
 def branches_of(of: Input, whose: str) -> BranchModel:
-    """The calibration's model, which must have branches."""
-    model = of.calibration.model
-    if not isinstance(model, BranchModel):
+    """The calibration's curves for rising and falling readings, which must be there."""
+    branches = of.calibration.branches
+    if branches is None:
         raise InputError(
-            f"the {whose} sensor's calibration has the model {model.name}, without curves for flexion and extension; make it anew with "
-            "skinfab calibrate --model branches, or control with --controller p"
+            f"the {whose} sensor's calibration has the model {of.calibration.model.name}, without curves for flexion and extension; make "
+            "it anew with skinfab calibrate of a log that goes there and back (--model branches says what is missing), or control with "
+            "--controller p"
         )
-    return model
+    return branches
 
 
 def require_two_sensors(human: Input, robot: Input, *, names: tuple[str, str], one_board: bool) -> None:

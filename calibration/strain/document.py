@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from calibration.strain.models import MODELS, Model, model_of
+from calibration.strain.models import MODELS, BranchModel, Model, model_of
 from skinfab.errors import InputError
 from skinfab.files import atomic_write
 from skinfab.readout.bridge import relative
@@ -46,6 +46,8 @@ class SensorCalibration:
         ISO 8601.
     error : mapping
         ``rms_deg`` and ``held_out_rms_deg``.
+    beside : BranchModel, optional
+        Curves for rising and falling readings where `model` is another: what a controller needs, however angles are best told.
     """
 
     model: Model
@@ -57,6 +59,12 @@ class SensorCalibration:
     made_from: Mapping[str, Any]
     date: str
     error: Mapping[str, float]
+    beside: BranchModel | None = None
+
+    @property
+    def branches(self) -> BranchModel | None:
+        """Curves for rising and falling readings, the model's or those beside it."""
+        return self.model if isinstance(self.model, BranchModel) else self.beside
 
     def relative(self, readings: FloatArray) -> FloatArray:
         """dU/U0 of readings."""
@@ -90,6 +98,7 @@ def save_calibration(calibration: SensorCalibration, path: str | Path) -> None:
         "range_deg": [calibration.low, calibration.high],
         "model": calibration.model.name,
         "numbers": calibration.model.numbers(),
+        **({} if calibration.beside is None else {"branches": calibration.beside.numbers()}),
         "error": dict(calibration.error),
         "made_from": dict(calibration.made_from),
     }
@@ -133,6 +142,7 @@ def load_calibration(path: str | Path) -> SensorCalibration:
             dict(content["made_from"]),
             str(content["date"]),
             {key: float(value) for key, value in content["error"].items()},
+            BranchModel.of_numbers(content["branches"]) if "branches" in content else None,
         )
     except (KeyError, TypeError, ValueError, AttributeError) as fault:
         if isinstance(fault, InputError):

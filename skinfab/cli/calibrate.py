@@ -203,7 +203,10 @@ def _calibration(args: argparse.Namespace, table: Table, log: Prepared, found: C
     from datetime import UTC, datetime
 
     from calibration.strain.document import SensorCalibration
+    from calibration.strain.models import BranchModel
 
+    # Control needs both branches, whichever model tells angles best.
+    branches = found.scores.get(BranchModel.name) if found.model.name != BranchModel.name else None
     return SensorCalibration(
         found.model,
         args.signal,
@@ -214,6 +217,7 @@ def _calibration(args: argparse.Namespace, table: Table, log: Prepared, found: C
         {"file": table.file, "sha256": table.sha256, "simulated": table.simulated, "n": found.n},
         datetime.now(UTC).isoformat(timespec="seconds"),
         {"rms_deg": found.rms_deg, "held_out_rms_deg": found.scores[found.model.name].held_out_rms_deg},
+        None if branches is None else BranchModel.fit(log.runs, degree=branches.degree),
     )
 
 

@@ -15,7 +15,7 @@ from calibration.control.margin import critical_gain
 from calibration.control.protocols import PAPER_DEG, uniform
 from calibration.finger.logs import calibrated
 from calibration.finger.simulated import HUMAN, ROBOT
-from calibration.strain.document import save_calibration
+from calibration.strain.document import load_calibration, save_calibration
 from skinfab.cli import control
 from skinfab.cli.main import main
 from skinfab.readout.pty_server import PtyServer
@@ -62,6 +62,22 @@ def test_words_for_people_and_a_forced_gain(tmp_path: Path, capsys: pytest.Captu
     printed = capsys.readouterr()
     assert "gain margin 0.8" in printed.out and "uniform: mean error" in printed.out and "the paper's: 18.77" in printed.out
     assert "was forced: expect the joint to swing" in printed.err
+
+
+def test_whatever_model_calibrate_takes_control_has_its_branches(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The way that docs/control.md names: calibrate as it comes (lag for the human's sensor), then control."""
+    words = []
+    for name in ("human", "robot"):
+        log, signal = str(ROOT / f"calibration/logs/{name}_finger.csv"), ["--signal", f"{name}_V", "--angle", "PIP_deg"]
+        degree = ["--degree", "3" if name == "human" else "4"]
+        assert main(["calibrate", log, *signal, *degree, "-o", str(tmp_path / name)]) == 0
+        words += [f"--{name}", str(tmp_path / name / "calibration.json")]
+    human = load_calibration(words[1])
+    assert human.model.name != "branches" and human.beside is not None and human.beside is human.branches
+    capsys.readouterr()
+    assert main(["control", "simulator", *words, "-o", str(tmp_path / "o"), "--json"]) == 0
+    uniform_run, random_run = json.loads(capsys.readouterr().out)["runs"]
+    assert uniform_run["mean_error_deg"] < 3.3 and random_run["mean_error_deg"] < 7
 
 
 def test_a_log_is_followed(calibrations: dict[str, str], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

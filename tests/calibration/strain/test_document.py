@@ -2,13 +2,14 @@
 
 import json
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from calibration.strain.document import SensorCalibration, load_calibration, save_calibration
-from calibration.strain.models import MODELS, Samples
+from calibration.strain.models import MODELS, BranchModel, Samples
 from skinfab.errors import InputError
 
 
@@ -33,6 +34,18 @@ def test_the_same_after_its_file(name: str, made: Callable[[str], SensorCalibrat
         np.testing.assert_array_equal(one, two)
     assert (after.signal, after.angle, after.u0, after.low, after.high) == ("U", "PIP", 2.5, 10.0, 80.0)
     assert after.error == before.error and after.made_from == before.made_from and after.date == before.date
+
+
+def test_branches_beside_another_model(made: Callable[[str], SensorCalibration], tmp_path: Path) -> None:
+    before, branches = made("lag"), made("branches").model
+    assert before.branches is None and made("branches").branches is not None and isinstance(branches, BranchModel)
+    save_calibration(replace(before, beside=branches), tmp_path / "c.json")
+    after = load_calibration(tmp_path / "c.json")
+    assert after.model.name == "lag" and after.branches is not None and after.branches.numbers() == branches.numbers()
+    content = json.loads((tmp_path / "c.json").read_text())
+    (tmp_path / "c.json").write_text(json.dumps(content | {"branches": {"curve": 1}}))
+    with pytest.raises(InputError, match="something in it is wrong"):
+        load_calibration(tmp_path / "c.json")
 
 
 @pytest.mark.parametrize(
