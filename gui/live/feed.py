@@ -182,7 +182,8 @@ class Feed:
             contacts, self._contacts = tuple(self._contacts), []
             anew, self._anew = self._anew, False
             touched, reading, newest = self._touched, self._reading, self._newest
-        rows = np.array([row for _, row in pending]) if pending else np.empty((0, 0))
+        columns = 0 if self.watch is None else len(self.watch.stream.channels) + 1
+        rows = np.array([row for _, row in pending]) if pending else np.empty((0, columns))
         return News(np.array([at for at, _ in pending]), rows, anew, newest, touched, contacts, reading)
 
     def status(self) -> Status:
