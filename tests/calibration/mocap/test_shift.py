@@ -40,10 +40,10 @@ def test_behind_slack() -> None:
     assert found.lag_s == pytest.approx(2.0, abs=0.02) and found.slack_deg == pytest.approx(8, abs=1)
 
 
-@pytest.mark.parametrize("shift", [10.7, 13.5])
+@pytest.mark.parametrize("shift", [13.2, 13.5])
 def test_behind_slack_with_half_in_common(shift: float) -> None:
     """Strokes with rests between: the slack is used up only at the first stroke, and what comes before counts as in common."""
-    strokes = ((6.0, 60), (11.5, 50), (14.8, 70), (17.0, 60), (23.7, 60), (26.2, 60), (28.5, 70), (36.0, 60))
+    strokes = ((6.0, 60), (11.5, 50), (17.0, 60), (23.7, 60), (26.2, 60), (28.5, 70), (36.0, 60))
 
     def rests(t: FloatArray) -> FloatArray:
         return 8 + sum(high * np.exp(-(((t - at) / 0.7) ** 2)) for at, high in strokes)

@@ -34,14 +34,11 @@ def knee(name: str, shift: float = 0.0) -> Prepared:
 @pytest.mark.parametrize("name", ["P001_FLEX", "P001_SQUAT", "P002_FLEX", "P002_SQUAT", "P005_FLEX", "P005_WALK1"])
 def test_real_knees_are_normal(name: str) -> None:
     """Their readings come 0.06 to 0.01 s before the markers."""
-    lag = log_lag(knee(name))
-    assert NORMAL_S[0] < -0.07 < lag.lag_s < 0.0 < NORMAL_S[1]
     facts, notes = clock_facts(knee(name))
-    assert facts is not None and not notes
+    assert facts is not None and not notes and NORMAL_S[0] < -0.07 < facts["lag_s"] < 0.0 < NORMAL_S[1]
 
 
-@pytest.mark.parametrize("name", ["P001_FLEX", "P002_SQUAT", "P005_FLEX"])
-@pytest.mark.parametrize("shift", [-0.3, 0.3])
+@pytest.mark.parametrize(("name", "shift"), [("P001_FLEX", 0.3), ("P002_SQUAT", -0.3), ("P005_FLEX", -0.3)])
 def test_a_shift_planted_in_real_knees_is_found_and_told(name: str, shift: float) -> None:
     own = log_lag(knee(name)).lag_s
     facts, notes = clock_facts(knee(name, shift))

@@ -33,8 +33,7 @@ def pair(
     return Pair(0.0, moves(TIME), np.ones(len(TIME), bool), 0.0, reading, (TIME >= 2.5) & (TIME <= 57.5))
 
 
-@pytest.mark.parametrize("lag", [-2.0, -0.3, -0.05, 0.0, 0.05, 0.3, 2.0])
-@pytest.mark.parametrize("slack", [0.0, 4.0, 9.0])
+@pytest.mark.parametrize(("lag", "slack"), [(-2.0, 4.0), (-0.3, 9.0), (-0.05, 0.0), (0.0, 9.0), (0.05, 4.0), (0.3, 0.0), (2.0, 9.0)])
 def test_a_planted_lag_is_found_within_a_sample(lag: float, slack: float) -> None:
     found = find_lag([pair(lag, slack=slack)], (-2.5, 2.5))
     assert found.lag_s == pytest.approx(lag, abs=STEP_S) and found.slack_deg == pytest.approx(slack, abs=1.0)
@@ -54,14 +53,14 @@ def test_a_curve_alone_takes_slack_for_lag() -> None:
 def test_the_interval_holds_the_truth_as_often_as_it_says() -> None:
     """Noise that hangs together, as skin over a joint makes it: naive intervals would be ten times too short."""
     held, widths = 0, []
-    for seed in range(15):
+    for seed in range(8):
         made = pair(0.3, noise=0.0)
         drift = np.convolve(np.random.default_rng(seed).standard_normal(len(TIME) + 400), np.hanning(401), "valid")
         wild = Pair(0.0, made.angle, made.angle_known, 0.0, made.reading + 0.02 * drift / drift.std(), made.reading_counts)
         found = find_lag([wild], (-1, 1))
         held += found.low_s <= 0.3 <= found.high_s
         widths.append(found.high_s - found.low_s)
-    assert held >= 12 and np.median(widths) < 0.3  # 95 % of 15, within the scatter of 15 draws
+    assert held >= 6 and np.median(widths) < 0.3  # 95 % of 8: fewer than 6 in one run of 170
 
 
 @pytest.mark.parametrize("lag", [0.0, 0.3, -0.3])
