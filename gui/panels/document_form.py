@@ -11,6 +11,7 @@ from tkinter import filedialog, ttk
 
 from gcode.printer import load_printer
 from gui.panels.field import Field, number
+from gui.scale import px
 from gui.state.session import Session
 from skinfab.errors import InputError, SkinfabError
 from skinfab.material import load_material
@@ -49,7 +50,7 @@ class DocumentForm(ttk.Frame):
         )
         self.thickness.grid(row=3, column=0, columnspan=2, sticky="ew", pady=2)
         self.text = tk.StringVar(self)
-        ttk.Label(self, textvariable=self.text, style="Faint.TLabel", wraplength=290, justify="left").grid(
+        ttk.Label(self, textvariable=self.text, style="Faint.TLabel", wraplength=px(self, 290), justify="left").grid(
             row=4, column=0, columnspan=2, sticky="w"
         )
 

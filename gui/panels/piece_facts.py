@@ -5,6 +5,7 @@ from __future__ import annotations
 import tkinter as tk
 from tkinter import ttk
 
+from gui.scale import px
 from gui.state.derived import Derived
 from gui.state.session import Session
 from skinfab.skin import Skin
@@ -17,7 +18,7 @@ class PieceFacts(ttk.Frame):
         super().__init__(master, name="piece")
         self._session, self._derived = session, derived
         self.text = tk.StringVar(self)
-        ttk.Label(self, textvariable=self.text, justify="left", wraplength=290, name="text").pack(anchor="w")
+        ttk.Label(self, textvariable=self.text, justify="left", wraplength=px(self, 290), name="text").pack(anchor="w")
 
     def refresh(self) -> None:
         """Show the selected piece."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import tkinter as tk
 from tkinter import ttk
 
+from gui.scale import px
 from gui.state.derived import Derived
 from gui.state.selection import NOTHING, Target
 from gui.state.session import Session
@@ -19,13 +20,17 @@ class PiecesPanel(ttk.Frame):
         super().__init__(master, name="pieces", padding=4)
         self._session, self._derived = session, derived
         self.summary = tk.StringVar(self)
-        ttk.Label(self, textvariable=self.summary, style="Faint.TLabel", wraplength=290, name="summary").pack(anchor="w", pady=(0, 2))
+        ttk.Label(self, textvariable=self.summary, style="Faint.TLabel", wraplength=px(self, 290), name="summary").pack(
+            anchor="w", pady=(0, 2)
+        )
         rows = ttk.Frame(self)
         rows.pack(fill="both", expand=True)
         self.list = ttk.Treeview(rows, columns=[c[0] for c in _COLUMNS], show="headings", height=2, selectmode="browse", name="list")
         for name, heading, width in _COLUMNS:
             self.list.heading(name, text=heading)
-            self.list.column(name, width=width, minwidth=width, anchor="w" if name == "id" else "e", stretch=name == "size")
+            self.list.column(
+                name, width=px(self, width), minwidth=px(self, width), anchor="w" if name == "id" else "e", stretch=name == "size"
+            )
         bar = ttk.Scrollbar(rows, command=self.list.yview)
         self.list.configure(yscrollcommand=bar.set)
         bar.pack(side="right", fill="y")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import tkinter as tk
 from tkinter import ttk
 
+from gui.scale import px
 from gui.state.selection import NOTHING
 from gui.state.session import Session
 from gui.theme import Theme
@@ -26,8 +27,8 @@ class ProblemsPanel(ttk.Frame):
         rows = ttk.Frame(self)
         rows.pack(fill="both", expand=True)
         self.list = ttk.Treeview(rows, columns=("kind", "text"), show="", height=_ROWS, selectmode="browse", name="list")
-        self.list.column("kind", width=70, stretch=False)
-        self.list.column("text", width=600)
+        self.list.column("kind", width=px(self, 70), stretch=False)
+        self.list.column("text", width=px(self, 600))
         bar = ttk.Scrollbar(rows, command=self.list.yview)
         self.list.configure(yscrollcommand=bar.set)
         bar.pack(side="right", fill="y")

@@ -11,6 +11,7 @@ from tkinter import ttk
 from gui.jobs.background import Background
 from gui.jobs.worker import Outcome
 from gui.panels.field import Field, number
+from gui.scale import px
 from gui.state.predict import Prediction, predict, worn, worn_strain
 from gui.state.profiles import ProfileShelf
 from gui.state.session import Session
@@ -48,9 +49,9 @@ class SensorForm(ttk.Frame):
         self._surfaces: tuple[tuple[object, ...], WornSkin] | None = None
         self._strain: tuple[Sensor, Mesh, str] | None = None
         self.words = tk.StringVar(self)
-        ttk.Label(self, textvariable=self.words, wraplength=290, justify="left", name="words").pack(anchor="w")
+        ttk.Label(self, textvariable=self.words, wraplength=px(self, 290), justify="left", name="words").pack(anchor="w")
         self.fit = tk.StringVar(self)
-        self._fit_label = ttk.Label(self, textvariable=self.fit, wraplength=290, justify="left", name="fit")
+        self._fit_label = ttk.Label(self, textvariable=self.fit, wraplength=px(self, 290), justify="left", name="fit")
         self._fit_label.pack(anchor="w", pady=(0, 3))
         self._place = _two_columns(self, "place")
         for k, (name, label, unit) in enumerate(_PLACE):

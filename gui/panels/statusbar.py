@@ -8,6 +8,7 @@ from collections.abc import Callable
 from tkinter import ttk
 
 from gui.jobs.worker import Step
+from gui.scale import px
 from gui.state.session import Session
 
 #: An estimate of the time left is given from this part of the work on: before, it is a guess.
@@ -38,7 +39,7 @@ class StatusBar(ttk.Frame):
         self._work = ttk.Frame(self, name="work")
         self.progress_text = tk.StringVar(self)
         ttk.Label(self._work, textvariable=self.progress_text, name="label").pack(side="left")
-        self._bar = ttk.Progressbar(self._work, length=160, maximum=1.0, name="bar")
+        self._bar = ttk.Progressbar(self._work, length=px(self, 160), maximum=1.0, name="bar")
         self._bar.pack(side="left", padx=6)
         ttk.Button(self._work, text="Cancel", command=cancel, style="Tool.TButton", name="cancel").pack(side="left")
         session.listen("hover", self._refresh)
