@@ -89,10 +89,12 @@ def run(args: argparse.Namespace) -> int:
         with _shown(quiet=args.json, source=source) as show, _ended_by_signals() as stop:
             record(source, recorder, seconds=args.seconds, told=show, stop=stop)
         counts, gone = asdict(source.counts), outages(source, began, time.time())
-        fault = source.fault if isinstance(source, SerialPort) else ""
+        fault, doubt = (source.fault, source.doubt) if isinstance(source, SerialPort) else ("", "")
     notes, rest = _notes(counts, args.output, recorder.bytes if recorder.frames else 0, wires)
     if counts["bad"] and fault:
         notes.append(f"the last that was none: {fault}")
+    if doubt:
+        notes.append(doubt)
     result: dict[str, Any] = {
         "file": str(args.output),
         "stream": source.stream.name,
@@ -104,18 +106,21 @@ def run(args: argparse.Namespace) -> int:
         "outages": gone,
         "notes": [*outage_notes(args.port, gone), *notes],
     }
+    # What would go on with the recording (record && calibrate) must not where there is none.
+    status = 0 if recorder.frames else 1
     if wires:
         from skinfab.wired import rest_facts, rest_lines
 
         result |= {"at_rest": rest_facts(rest), "wiring_notes": wiring_notes}
     if args.json:
         print(json.dumps(result, allow_nan=False))
-        return 0
+        return status
     steps.say(result["notes"])
-    print(_sentence(result))
+    if recorder.frames:
+        print(_sentence(result))
     for line in rest_lines(rest) if wires else []:
         print(line)
-    return 0
+    return status
 
 
 def _wires(path: Path | None) -> tuple[Wire, ...]:

@@ -69,12 +69,24 @@ class LineDecoder:
         self._before: float | None = None
         self._since: float | None = None
         self._lines = 0
+        self._guessed = False
         self._start: float | None = None
         self._wrong = 0
         #: What was not understood of the last line that was no frame, a sentence; empty where there was none.
         self.fault = ""
+        self._commas = _Commas()
         #: What is sent; None until that is known.
         self.stream: Stream | None = None
+
+    @property
+    def doubt(self) -> str:
+        """Why what is read may mean something else, a sentence; empty where nothing speaks for that."""
+        if not (self._guessed and self._commas.decimal):
+            return ""
+        return (
+            f"{self._commas.example!r} is read as two channels, and may be one number with a decimal comma; let the board print "
+            "points, or send a line of headings: with two names it is two channels"
+        )
 
     @property
     def bad(self) -> int:
@@ -113,21 +125,33 @@ class LineDecoder:
         cells = [cell.strip() for cell in line.split(mark)]
         numbers = _numbers(cells)
         if numbers is None:
-            if not self._headings(cells, mark):
+            own = next((mark for mark in _MARKS if mark in line), mark)
+            if self.stream is not None and own != mark and (apart := _numbers([cell.strip() for cell in line.split(own)])):
+                self._too_many(line, len(apart), own)
+            elif not self._headings(cells, mark):
                 self._not_understood(line, "is no line of numbers parted by commas, semicolons or tabs, and none of headings")
             return []
+        if mark == b"," and (self.stream is None or self._guessed):
+            self._commas.see(cells)
         if self.stream is None:
             return self._guess(_Line(numbers, host_time, came, mark))
         if len(numbers) != len(self._names):
-            decimal = "; are these decimal commas? Print points, or part the numbers by semicolons" if mark == b"," else ""
-            self._not_understood(line, f"has {len(numbers)} numbers where {len(self._names)} are named{decimal}")
+            self._too_many(line, len(numbers), mark)
             return []
         return self._frames([_Line(numbers, host_time, came, mark)])
+
+    def _too_many(self, line: bytes, numbers: int, mark: bytes) -> None:
+        """Numbers and names are not as many, or not parted alike."""
+        named = len(self._names)
+        hint = "; are these decimal commas? Print points, or part the numbers by semicolons" if mark == b"," else ""
+        if any(" " in name for name in self._names) or mark != self._mark:
+            hint = f" ({', '.join(repr(name) for name in self._names)}); part the names as the numbers"
+        self._not_understood(line, f"has {numbers} numbers where {named} {'is' if named == 1 else 'are'} named{hint}")
 
     def _not_understood(self, line: bytes, why: str) -> None:
         self._wrong += 1
         shown = line[:_SHOWN].decode("latin-1")
-        if shown.isprintable():  # else it is noise, or was never meant for people
+        if shown.replace("\t", " ").isprintable():  # else it is noise, or was never meant for people
             self.fault = f"the line {shown!r} {why}"
 
     def _headings(self, cells: list[bytes], mark: bytes) -> bool:
@@ -161,6 +185,7 @@ class LineDecoder:
         self._waiting = [*self._waiting, line][-ALIKE:]
         if len(self._waiting) < ALIKE or line.host_time - self._since < HEADINGS_S:
             return []
+        self._guessed = True
         self._take(tuple(f"ch{k + 1}" for k in range(len(line.numbers))), line.mark)
         lines, self._waiting = self._waiting, []
         return self._frames(lines)
@@ -192,6 +217,29 @@ class LineDecoder:
             array = np.array(values)
             out.append(Frame(device_time, line.host_time, sequence, array, np.isfinite(array), stream.saturated(array)))
         return out
+
+
+class _Commas:
+    """Are lines of two cells perhaps one number each? 1,050 and 1,125: a whole number, and digits that are always as many."""
+
+    def __init__(self) -> None:
+        self._digits: int | None = None
+        self._never = self._zero = False
+        self.example = ""
+
+    @property
+    def decimal(self) -> bool:
+        """No whole number is printed with a zero before it."""
+        return self._zero and not self._never
+
+    def see(self, cells: list[bytes]) -> None:
+        """The cells of a line."""
+        if len(cells) != 2 or not (cells[0].lstrip(b"+-").isdigit() and cells[1].isdigit()) or self._digits not in (None, len(cells[1])):
+            self._never = True
+            return
+        self._digits = len(cells[1])
+        if self._digits > 1 and cells[1].startswith(b"0") and not self._zero:
+            self._zero, self.example = True, b",".join(cells).decode("ascii")
 
 
 def _numbers(cells: list[bytes]) -> list[float] | None:

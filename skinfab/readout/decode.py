@@ -39,6 +39,11 @@ class Decoder(Protocol):
         """Why the last bad piece was none, a sentence; empty where that cannot be said."""
         ...
 
+    @property
+    def doubt(self) -> str:
+        """Why what is read may mean something else, a sentence; else empty."""
+        ...
+
     def reset(self) -> None:
         """The port was gone: what had begun will not be ended."""
         ...
@@ -63,8 +68,9 @@ class PacketDecoder:
     """
 
     checked = True
-    #: Of a packet that is hurt nothing more can be said.
+    #: Of a packet that is hurt nothing more can be said, and of one that is whole nothing is in doubt.
     fault = ""
+    doubt = ""
 
     def __init__(self) -> None:
         self._splitter = Splitter()
@@ -141,6 +147,10 @@ class AnyDecoder:
     @property
     def fault(self) -> str:
         return next((decoder.fault for decoder in self._each if decoder.fault), "")
+
+    @property
+    def doubt(self) -> str:
+        return self._each[0].doubt
 
     def reset(self) -> None:
         for decoder in self._each:

@@ -37,9 +37,11 @@ class Lowpass:
 
     def __init__(self, cutoff_hz: float, rate_hz: float, *, order: int = 4) -> None:
         if not 0 < cutoff_hz < rate_hz / 2:
+            # A thousandth of a usable rate: times in ms under a heading without a unit.
+            unit = "; times were taken as seconds: if they are milliseconds, call their column time_ms" if cutoff_hz < 500 * rate_hz else ""
             raise InputError(
                 f"a cut-off of {cutoff_hz:g} Hz needs more than {2 * cutoff_hz:g} samples a second, and there are {rate_hz:g}; "
-                "sample faster or lower the cut-off"
+                f"sample faster or lower the cut-off{unit}"
             )
         self.cutoff_hz, self.rate_hz, self.order = cutoff_hz, rate_hz, order
         self._sections = scipy.signal.butter(order, cutoff_hz, fs=rate_hz, output="sos")

@@ -121,6 +121,11 @@ class SerialPort:
         """Why the last line that was no frame was none, a sentence; empty where there was none, or packets come."""
         return self._decoder.fault
 
+    @property
+    def doubt(self) -> str:
+        """Why what is read may mean something else, a sentence; else empty."""
+        return self._decoder.doubt
+
     def open(self) -> Self:
         """Open the port and wait until it has said what its channels are.
 

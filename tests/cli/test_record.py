@@ -11,6 +11,8 @@ import subprocess
 import sys
 import threading
 import time
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -73,24 +75,53 @@ def test_lines_without_a_checksum_are_said(tmp_path: Path, capsys: pytest.Captur
     assert "without a checksum" in capsys.readouterr().err
 
 
-def test_a_board_whose_numbers_cannot_be_told_apart_is_told_so(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Decimal commas between commas: two numbers look like four."""
+@contextmanager
+def talking(lines: Iterable[bytes]) -> Iterator[str]:
+    """A port on which a board says one of these every 20 ms."""
     ours, theirs = pty.openpty()
     stop = threading.Event()
 
     def talk() -> None:
-        while not stop.wait(0.02):
-            os.write(ours, b"S1,S2\n0,871,1,25\n")
+        for line in lines:
+            if stop.wait(0.02):
+                return
+            os.write(ours, line)
 
     board = threading.Thread(target=talk)
     board.start()
     try:
-        assert main(["record", os.ttyname(theirs), "-o", str(tmp_path / "a.csv"), "--seconds", "0.5", "--json"]) == 0
+        yield os.ttyname(theirs)
     finally:
         stop.set()
         board.join()
         os.close(ours)
         os.close(theirs)
+
+
+def test_where_nothing_was_recorded_what_comes_next_does_not_run(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Names parted by spaces are one name, over two numbers parted by a tab."""
+    with talking(itertools.repeat(b"time_s A B\n0.5\t1.25\n")) as port:
+        assert main(["record", port, "-o", str(tmp_path / "a.csv"), "--seconds", "0.5"]) == 1
+    out = capsys.readouterr()
+    assert out.out == "" and not (tmp_path / "a.csv").exists() and "no frame came; no file was left" in out.err
+    assert r"the line '0.5\t1.25' has 2 numbers where 1 is named ('time_s A B'); part the names as the numbers" in out.err
+
+
+@pytest.mark.parametrize(("heading", "doubted"), [(b"", True), (b"A,B\n", False)])
+def test_one_number_with_a_decimal_comma_may_be_two_channels(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], heading: bytes, doubted: bool
+) -> None:
+    with talking(heading + b"1,%03d\n" % (50 + k % 200) for k in itertools.count()) as port:
+        assert main(["record", port, "-o", str(tmp_path / "a.csv"), "--seconds", "0.5", "--json"]) == 0
+    result = json.loads(capsys.readouterr().out)
+    told = [note for note in result["notes"] if "may be one number with a decimal comma; let the board print points" in note]
+    assert len(result["channels"]) == 2 and len(told) == doubted
+
+
+def test_a_board_whose_numbers_cannot_be_told_apart_is_told_so(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Decimal commas between commas: two numbers look like four."""
+    with talking(itertools.repeat(b"S1,S2\n0,871,1,25\n")) as port:
+        assert main(["record", port, "-o", str(tmp_path / "a.csv"), "--seconds", "0.5", "--json"]) == 1
     result = json.loads(capsys.readouterr().out)
     assert result["frames"] == 0 and not (tmp_path / "a.csv").exists()
     bad, none, why = result["notes"]
@@ -121,13 +152,16 @@ def test_on_a_terminal_it_is_said_how_it_goes(tmp_path: Path, monkeypatch: pytes
 def test_ctrl_c_ends_a_recording_that_is_whole(tmp_path: Path, number: int) -> None:
     path = tmp_path / "a.frames"
     command = [sys.executable, "-m", "skinfab", "record", "simulator", "-o", str(path), "--json"]
-    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-    for _ in range(300):
-        if path.exists() and path.stat().st_size > 5000:
-            break
-        time.sleep(0.05)
-    process.send_signal(number)
-    out, err = process.communicate(timeout=30)
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        try:
+            for _ in range(300):
+                if path.exists() and path.stat().st_size > 5000:
+                    break
+                time.sleep(0.05)
+            process.send_signal(number)
+            out, err = process.communicate(timeout=30)
+        finally:
+            process.kill()  # does nothing to one that has ended
     assert process.returncode == 0 and err == ""
     assert json.loads(out)["frames"] == len(read_log(path).recording) > 5
 

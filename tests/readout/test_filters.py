@@ -52,3 +52,10 @@ def test_too_few_samples() -> None:
     assert low.zero_phase(np.ones(low.shortest)).tolist() == pytest.approx([1.0] * low.shortest)
     with pytest.raises(InputError, match="are too few"):
         low.zero_phase(np.ones(low.shortest - 1))
+
+
+def test_milliseconds_that_were_taken_as_seconds() -> None:
+    with pytest.raises(InputError, match="times were taken as seconds: if they are milliseconds, call their column time_ms"):
+        Lowpass(5.0, 0.1)
+    with pytest.raises(InputError, match=r"lower the cut-off$"):
+        Lowpass(5.0, 0.001)
