@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from tkinter import ttk
 
 #: Words of a key as Tk writes them, and as people read them.
-_KEY_WORDS = (("Control-", "Ctrl+"), ("Shift-", "Shift+"), ("Alt-", "Alt+"), ("Key-", ""), ("Return", "Enter"))
+_KEY_WORDS = (("Control-", "Ctrl+"), ("Shift-", "Shift+"), ("Alt-", "Alt+"), ("Key-", ""), ("Return", "Enter"), ("space", "Space"))
 
 #: Classes of widgets that do something of their own when Space is pressed.
 _PRESSED_BY_SPACE = ("TButton", "TCheckbutton", "TRadiobutton", "Treeview", "Button", "Checkbutton", "Radiobutton", "Listbox")

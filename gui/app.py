@@ -244,7 +244,7 @@ class App:
     def _begin(self, path: Path | None) -> None:
         """Offer what a crash has left, then open what was asked for."""
         for left in left_over(self.desk.state / "autosave"):
-            what = left.path.name if left.path is not None else "a skin that was never saved"
+            what = left.path.name if left.path is not None else "work that had no file yet"
             when = time.strftime("%H:%M on %d %B", time.localtime(left.when))
             text = f"skinfab ended without saving {what}. There is a copy of it as it was at {when}."
             answer = self.desk.dialogs.ask("Unsaved work was kept", text, ("Open the copy", "Later", "Throw it away"), cancel="Later")

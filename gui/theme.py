@@ -122,17 +122,20 @@ def apply(root: tk.Misc, theme: Theme) -> None:
     style.configure("Title.TLabel", font=_bold(root))
     for kind in ("error", "warning", "good"):
         style.configure(f"{kind.title()}.TLabel", foreground=getattr(theme, kind))
-    style.configure("TButton", padding=(8, 3), relief="flat", background=theme.panel)
-    style.configure("Tool.TButton", padding=(6, 3), width="")
+    style.configure("TButton", padding=(8, 3), relief="raised", background=theme.panel)
+    style.configure("Tool.TButton", padding=(6, 3), width="", relief="flat")
     style.configure("Tool.Toolbutton", padding=(5, 3), background=theme.panel)
     shades = [("pressed", theme.accent), ("active", theme.window)]
     style.map("TButton", background=shades, foreground=[("disabled", theme.faint), ("pressed", theme.on_accent)])
-    chosen = [("selected", theme.accent), ("active", theme.window)]
+    chosen = [("disabled", theme.panel), ("selected", theme.accent), ("active", theme.window)]
     words = [("disabled", theme.faint), ("selected", theme.on_accent)]
     for name in ("Toolbutton", "Tool.Toolbutton"):
         style.map(name, background=chosen, foreground=words)
     for name in ("TCheckbutton", "TRadiobutton"):
-        style.map(name, background=[("active", theme.window)], indicatorcolor=[("selected", theme.accent), ("!selected", theme.field)])
+        style.configure(name, upperbordercolor=theme.faint, lowerbordercolor=theme.faint)
+        # The style's own map is stronger than what is configured, and white in any theme.
+        style.map(name, background=[("active", theme.window)], indicatorbackground=[("selected", theme.accent), ("!selected", theme.field)])
+        style.map(name, indicatorforeground=[("selected", theme.on_accent), ("!selected", theme.text)])
     for name in ("TEntry", "TSpinbox", "TCombobox"):
         style.configure(name, fieldbackground=theme.field, foreground=theme.text, padding=2)
         style.map(name, fieldbackground=[("readonly", theme.field)], foreground=[("disabled", theme.faint), ("invalid", theme.error)])
@@ -142,6 +145,8 @@ def apply(root: tk.Misc, theme: Theme) -> None:
     style.configure("TNotebook", background=theme.window, borderwidth=0)
     style.configure("TNotebook.Tab", background=theme.window, padding=(10, 3))
     style.map("TNotebook.Tab", background=[("selected", theme.panel)])
+    style.configure("TScrollbar", background=theme.panel, troughcolor=theme.window, bordercolor=theme.border)
+    style.map("TScrollbar", background=[("disabled", theme.window), ("active", theme.border)], arrowcolor=[("disabled", theme.faint)])
     style.configure("TProgressbar", background=theme.accent)
     style.configure("TPanedwindow", background=theme.window)
     for option, value in (("background", theme.panel), ("foreground", theme.text)):

@@ -32,8 +32,9 @@ class HelpCommands:
     def show_keys(self) -> None:
         """A list of all keys, in two columns of text."""
         mouse = (
-            "Object: drag turns, Shift+drag moves, wheel zooms, click selects.\n"
-            "Flat skin: drag a sensor to move it, its handle turns it, drag beside moves the sheet, wheel zooms.\n\n"
+            "Object: drag turns, Ctrl+drag or the middle button moves, wheel zooms, click selects; arrows turn, 1 to 6 show the sides.\n"
+            "Flat skin: drag a sensor to move it (Ctrl: without snapping), its handle to turn it; drag beside selects, the middle or right "
+            "button moves the sheet, wheel zooms; arrows nudge by 0.1 mm, with Shift by 1 mm, [ and ] turn.\n\n"
         )
         self._desk.dialogs.ask("Keys and mouse", mouse + "\n".join(f"{key}:  {what}" for key, what in self._keys()), ("Close",))
 

@@ -47,7 +47,7 @@ class _OpenMesh(tk.Toplevel):
         self._wrapped, self._ball, self._fault = tk.BooleanVar(self), tk.StringVar(self, value="8"), tk.StringVar(self)
         body = ttk.Frame(self, padding=16, name="body")
         body.pack(fill="both", expand=True)
-        ttk.Label(body, text=facts.headline, style="Title.TLabel", wraplength=520).pack(anchor="w")
+        ttk.Label(body, text=facts.headline, style="Title.TLabel", wraplength=620).pack(anchor="w")
         self._ask_units(body, facts)
         self._list(body, "What was found", facts.found)
         self._list(body, "Always done", facts.cleaning_does)
@@ -62,11 +62,10 @@ class _OpenMesh(tk.Toplevel):
         ttk.Button(buttons, text="Cancel", command=self.destroy, name="cancel").pack(side="left")
         self.bind("<Return>", lambda event: self._take())
         self.bind("<Escape>", lambda event: self.destroy())
-        self.after_idle(buttons.nametowidget("open").focus_set)
-        make_modal(self, master)
+        make_modal(self, master, buttons.nametowidget("open"))
 
     def _ask_units(self, body: ttk.Frame, facts: MeshFacts) -> None:
-        ttk.Label(body, text=facts.unit_reason, wraplength=520, style="TLabel" if facts.unit_sure else "Warning.TLabel").pack(
+        ttk.Label(body, text=facts.unit_reason, wraplength=620, style="TLabel" if facts.unit_sure else "Warning.TLabel").pack(
             anchor="w", pady=(8, 2)
         )
         row = ttk.Frame(body, name="units")
@@ -87,7 +86,7 @@ class _OpenMesh(tk.Toplevel):
         if lines:
             shown = [*lines[:8], *([f"and {len(lines) - 8} more"] if len(lines) > 8 else [])]
             text = "\n".join([*([heading + ":"] if heading else []), *(f"  • {line}" for line in shown)])
-            ttk.Label(body, text=text, wraplength=520, justify="left").pack(anchor="w", pady=(6, 0))
+            ttk.Label(body, text=text, wraplength=620, justify="left").pack(anchor="w", pady=(6, 0))
 
     def _take(self) -> None:
         wrap = 0.0

@@ -7,6 +7,9 @@ from collections.abc import Sequence
 from functools import partial
 from tkinter import ttk
 
+#: Longest line of a question, px; more lines in a row than a low screen shows are set in two columns.
+_WIDE, _MOST_LINES = 560, 20
+
 
 def place_over(window: tk.Toplevel, master: tk.Misc) -> None:
     """Put a dialog over the middle of its master, all of it on the screen."""
@@ -17,13 +20,13 @@ def place_over(window: tk.Toplevel, master: tk.Misc) -> None:
     window.geometry(f"+{max(x, 0)}+{max(y, 0)}")
 
 
-def make_modal(window: tk.Toplevel, master: tk.Misc) -> None:
-    """Show a dialog and wait until it is gone."""
+def make_modal(window: tk.Toplevel, master: tk.Misc, first: tk.Misc) -> None:
+    """Show a dialog with the focus on `first`, and wait until it is gone."""
     window.transient(master.winfo_toplevel())
     place_over(window, master)
     window.wait_visibility()
     window.grab_set()
-    window.focus_set()
+    first.focus_set()
     window.wait_window()
 
 
@@ -55,7 +58,13 @@ def ask(master: tk.Misc, title: str, text: str, answers: Sequence[str], *, cance
 
     body = ttk.Frame(window, padding=16, name="body")
     body.pack(fill="both", expand=True)
-    ttk.Label(body, text=text, wraplength=460, justify="left", name="text").pack(anchor="w")
+    short, long = _parted(text)
+    ttk.Label(body, text=short, wraplength=_WIDE, justify="left", name="text").pack(anchor="w")
+    if long:
+        columns = ttk.Frame(body, name="columns")
+        columns.pack(fill="x", pady=(12, 0))
+        for lines in (long[: (len(long) + 1) // 2], long[(len(long) + 1) // 2 :]):
+            ttk.Label(columns, text="\n".join(lines), justify="left").pack(side="left", anchor="n", padx=(0, 24))
     row = ttk.Frame(body, name="buttons")
     row.pack(anchor="e", pady=(14, 0))
     for k, answer in enumerate(answers):
@@ -64,7 +73,12 @@ def ask(master: tk.Misc, title: str, text: str, answers: Sequence[str], *, cance
         button.pack(side="left", padx=(6, 0))
     window.bind("<Escape>", lambda event: give(cancel))
     window.protocol("WM_DELETE_WINDOW", lambda: give(cancel))
-    row.nametowidget("answer0").focus_set()
-    window.after_idle(row.nametowidget("answer0").focus_set)
-    make_modal(window, master)
+    make_modal(window, master, row.nametowidget("answer0"))
     return given[0]
+
+
+def _parted(text: str) -> tuple[str, list[str]]:
+    """What comes before the last blank line, and the lines behind it where they are too many for one column."""
+    head, _, tail = text.rpartition("\n\n")
+    lines = tail.split("\n")
+    return (head, lines) if len(lines) > _MOST_LINES else (text, [])

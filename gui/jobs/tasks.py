@@ -87,7 +87,7 @@ def look_at_mesh(*, path: Path, progress: Progress) -> MeshFacts:
         units=guess.units,
         unit_reason=guess.reason.split("; set --units")[0],
         unit_sure=guess.sure,
-        found=tuple(fault.sentence for fault in found.faults),
+        found=tuple(fault.sentence.replace("--repair", "repair") for fault in found.faults),
         cleaning_does=tuple(does),
         repair_does=tuple(would_do),
         usable=after.usable,

@@ -10,7 +10,7 @@ from gui.state.derived import Derived
 from gui.state.selection import NOTHING, Target
 from gui.state.session import Session
 
-_COLUMNS = (("id", "piece", 54), ("size", "size, mm", 80), ("mean", "d mean", 76), ("p99", "p99", 46), ("max", "max", 46))
+_COLUMNS = (("id", "piece", 50), ("size", "size, mm", 74), ("mean", "d mean", 74), ("p99", "p99", 46), ("max", "max", 46))
 
 
 class PiecesPanel(ttk.Frame):

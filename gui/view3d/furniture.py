@@ -147,6 +147,9 @@ class Furniture:
         height, steps = _BAR[0] * self._dpi, _BAR[1]
         wide = 200 * self._dpi
         colours = heat(np.linspace(*HEAT_RANGE, steps))
+        low_edge = top + height + 2 * self._font.metrics("linespace") + 8
+        # The object may reach up to here: words on its colours could not be read.
+        self._canvas.create_rectangle(right - wide - 5, top - 4, right + 5, low_edge, fill=theme.view, outline="", tags=("legend",))
         self._canvas.create_text(right, top, text="distortion d", fill=theme.text, font=self._font, anchor="ne", tags=("legend",))
         top += self._font.metrics("linespace") + 3
         for k, (r, g, b) in enumerate(colours.tolist()):
