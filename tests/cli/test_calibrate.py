@@ -131,6 +131,21 @@ def test_the_clocks_are_told_and_notes_of_other_tasks(log: Callable[..., str], t
     assert low <= 0.3 <= high
 
 
+def test_what_is_useless_is_not_written_and_why_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Clocks 6 s apart, and a wire that was open for 0.05 s."""
+    time = np.arange(6000) / 100
+    angle = 45 + 25 * np.sin(1.1 * time + np.sin(0.7 * time)) + 15 * np.sin(2.1 * time)
+    reading = 1 + 2e-3 * np.interp(time - 6, time, angle)
+    reading[1000:1005] = 60.0
+    rows = "\n".join(f"{t},{a},{u}" for t, a, u in zip(time.tolist(), angle.tolist(), reading.tolist(), strict=True))
+    (tmp_path / "log.csv").write_text(f"time,PIP,U\n{rows}\n")
+    words = ["calibrate", str(tmp_path / "log.csv"), "--signal", "U", "--angle", "PIP", "-o", str(tmp_path / "o")]
+    assert main(words) == 3
+    said = capsys.readouterr().err
+    assert "the calibration is useless: on the half held out" in said and "were both recorded at once" in said
+    assert "row 1001: 'U' is 60" in said and not (tmp_path / "o").exists()
+
+
 def test_a_place_that_is_none(log: Callable[..., str], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "file").write_text("")
     assert main(["calibrate", log(), "--signal", "U", "--angle", "PIP", "-o", str(tmp_path / "file")]) == 1

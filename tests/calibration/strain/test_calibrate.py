@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from calibration.strain.calibrate import calibrate, rms_on
-from calibration.strain.models import Samples
+from calibration.strain.models import MODELS, Samples
 from calibration.strain.prepare import PARTS, Prepared, prepare
 from skinfab.errors import InputError
 from skinfab.readout.table import Table, read_table
@@ -123,6 +123,14 @@ def test_real_knees_against_the_published_figures() -> None:
     found = [calibrate(knee(f"{who}_FLEX")) for who in PEOPLE]
     median = {name: np.median([each.scores[name].held_out_rms_deg for each in found]) for name in found[0].scores}
     assert median["poly"] < 6.0 and median["branches"] < 4.7 and median["play"] < 5.3 and median["lag"] < 4.2, median
+
+
+@pytest.mark.parametrize("who", ["P001", "P005"])
+def test_real_knees_keep_all_models_over_the_usual_range(who: str) -> None:
+    """Within 10 to 80 degrees the half that is fitted has one way back, which folds by time would leave out whole."""
+    found = calibrate(knee(f"{who}_FLEX", limits=None), model="branches")
+    assert list(found.scores) == list(MODELS) and found.model.name == "branches"
+    assert found.scores["branches"].held_out_rms_deg < 3.5
 
 
 def test_real_knees_on_a_new_task() -> None:
