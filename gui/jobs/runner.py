@@ -10,13 +10,28 @@ from multiprocessing.connection import Connection
 from multiprocessing.context import SpawnProcess
 from typing import Any, Protocol
 
-from gui.jobs.worker import Order, Outcome, Step, serve
+from gui.jobs.worker import Order, Outcome, Ready, Step, serve
 
 #: How often the window looks, ms.
 POLL_MS = 15
 
 #: What was cancelled may clean up this long, s, before it is ended for good.
 GRACE_S = 5.0
+
+
+#: A second process is made ready so long, s, after the first was started: quick clicks that take back work want one each, but the
+#: window's own start comes first.
+SPARE_AFTER_S = 3.0
+
+
+@dataclass
+class _Helper:
+    """A process, the way to it, whether it listens yet, and since when there is it."""
+
+    process: SpawnProcess
+    channel: Connection
+    began: float
+    ready: bool = False
 
 
 class Clock(Protocol):
@@ -64,7 +79,9 @@ class Runner:
         self._job: Job | None = None
         self._closed = False
         self._retired: list[tuple[SpawnProcess, float]] = []
-        self._process, self._channel = _start()
+        self._helper = _start()
+        self._spare: _Helper | None = None
+        self._order: Order | None = None  # waits until the process listens: sending much to one that does not would stop the window
         self._timer = clock.after(POLL_MS, self._poll)
 
     @property
@@ -94,18 +111,17 @@ class Runner:
         self.cancel()
         self._job = Job(label, done, failed)
         self._changed(Step(0.0, label))
-        try:
-            self._channel.send(Order(function, arguments))
-        except (BrokenPipeError, ConnectionResetError):  # it died while idle
-            self._replace()
-            self._channel.send(Order(function, arguments))
+        self._order = Order(function, arguments)
+        self._send()
 
     def cancel(self) -> bool:
         """Stop what is going on; whether there was anything. Its files are cleaned up, its result is never seen."""
         if self._job is None:
             return False
         self._job = None
-        self._replace()
+        if self._order is None:
+            self._replace()
+        self._order = None  # one that was not sent yet costs no process
         self._changed(None)
         return True
 
@@ -114,32 +130,63 @@ class Runner:
         self._closed = True
         self._clock.after_cancel(self._timer)
         self._job = None
-        self._channel.close()
-        self._process.terminate()
-        for process, _ in [(self._process, 0.0), *self._retired]:
+        helpers = [self._helper, *([self._spare] if self._spare is not None else [])]
+        for helper in helpers:
+            helper.channel.close()
+            helper.process.terminate()
+        for process in [*(helper.process for helper in helpers), *(process for process, _ in self._retired)]:
             process.join(timeout=1.0)
             if process.is_alive():
                 process.kill()
                 process.join()
 
+    def _send(self) -> None:
+        if self._order is None or not self._helper.ready:
+            return
+        order, self._order = self._order, None
+        try:
+            self._helper.channel.send(order)
+        except (BrokenPipeError, ConnectionResetError):  # it died while idle
+            self._order = order
+            self._replace()
+
     def _replace(self) -> None:
-        self._channel.close()
-        self._process.terminate()
-        self._retired.append((self._process, time.monotonic() + GRACE_S))
-        self._process, self._channel = _start()
+        """Let the process go; the spare one takes its place."""
+        self._helper.channel.close()
+        self._helper.process.terminate()
+        self._retired.append((self._helper.process, time.monotonic() + GRACE_S))
+        self._helper, self._spare = self._spare or _start(), None
+        self._send()
 
     def _poll(self) -> None:
         self._timer = self._clock.after(POLL_MS, self._poll)
         self._bury()
+        if self._spare is None and self._helper.ready and time.monotonic() - self._helper.began > SPARE_AFTER_S:
+            self._spare = _start()
+        self._listen_to_spare()
         # What it says may start other work, on another channel.
-        channel = self._channel
+        helper = self._helper
         try:
-            while not self._closed and channel is self._channel and channel.poll():
-                self._hear(channel.recv())
+            while not self._closed and helper is self._helper and helper.channel.poll():
+                self._hear(helper.channel.recv())
         except (EOFError, ConnectionResetError):
             self._mourn()
 
-    def _hear(self, message: Step | Outcome) -> None:
+    def _listen_to_spare(self) -> None:
+        """A spare one has nothing to say but that it is ready."""
+        spare = self._spare
+        try:
+            if spare is not None and spare.channel.poll():
+                spare.channel.recv()
+                spare.ready = True
+        except (EOFError, ConnectionResetError):  # it died: another will be made
+            self._spare = None
+
+    def _hear(self, message: Ready | Step | Outcome) -> None:
+        if isinstance(message, Ready):
+            self._helper.ready = True
+            self._send()
+            return
         job = self._job
         if job is None:
             return
@@ -171,11 +218,11 @@ class Runner:
         self._retired = [(p, t) for p, t in self._retired if p.is_alive()]
 
 
-def _start() -> tuple[SpawnProcess, Connection]:
+def _start() -> _Helper:
     # Not forked: a copy of a process with a window and threads is neither safe nor small.
     context = multiprocessing.get_context("spawn")
     ours, theirs = context.Pipe()
     process = context.Process(target=serve, args=(theirs,), daemon=True, name="skinfab worker")
     process.start()
     theirs.close()
-    return process, ours
+    return _Helper(process, ours, time.monotonic())

@@ -28,6 +28,11 @@ class Order:
 
 
 @dataclass(frozen=True)
+class Ready:
+    """All is imported: what is sent now is read at once."""
+
+
+@dataclass(frozen=True)
 class Step:
     """How far the work is."""
 
@@ -60,6 +65,7 @@ def serve(channel: Connection) -> None:
     signal.signal(signal.SIGTERM, _end)
     try:
         _import_what_takes_long()
+        channel.send(Ready())
         while True:
             order = channel.recv()
             signal.signal(signal.SIGTERM, _interrupt)  # cancelled: unwind, so that half-written files go

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+import gui.jobs.runner as module
 from gui.jobs.runner import Runner
 
 HERE = Path(__file__).parent
@@ -104,3 +105,24 @@ def test_the_window_answers_while_work_goes_on(root, runner, work):
         time.sleep(0.005)
     assert finished == ["finished"]
     assert sorted(late)[int(0.99 * len(late))] < 0.1
+
+
+def test_work_that_takes_the_place_of_other_work_waits_for_no_start(root, runner, work, monkeypatch):
+    """A spare process is ready when the one at work is ended."""
+    monkeypatch.setattr(module, "SPARE_AFTER_S", 0.0)
+    assert outcome(root, runner, work.double, number=1) == ("done", 2)
+    wait(root, lambda: runner._spare is not None and runner._spare.ready)
+    spare = runner._spare.process
+    runner.start("busy", work.busy, done=lambda r: None, failed=lambda s: None, seconds=20.0)
+    wait(root, lambda: any(s and s.fraction > 0.001 for s in runner.seen["steps"]))
+    assert outcome(root, runner, work.double, number=3) == ("done", 6)
+    assert runner._helper.process is spare
+
+
+def test_much_to_send_does_not_stop_the_window_while_the_process_starts(root, runner, work):
+    began = time.monotonic()
+    heard = []
+    runner.start("measuring", work.size_of, done=heard.append, failed=heard.append, blob=b"x" * 50_000_000)
+    assert time.monotonic() - began < 0.2
+    wait(root, lambda: heard)
+    assert heard == [50_000_000]
