@@ -28,3 +28,4 @@ pictures: demo
 	@mkdir -p docs/pictures
 	cp demo_out/preview.png docs/pictures/robot_finger.png
 	$(PYTHON) tools/draw_patterns.py
+	@tests/setup_gui.sh && $(PYTHON) tools/draw_gui.py
