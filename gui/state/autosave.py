@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import fcntl
 import json
 import os
 import secrets
@@ -50,6 +51,7 @@ class Left:
         """Remove the copy."""
         self.file.unlink(missing_ok=True)
         self.file.with_suffix(".json").unlink(missing_ok=True)
+        self.file.with_suffix(".lock").unlink(missing_ok=True)
 
 
 class Autosave:
@@ -66,6 +68,9 @@ class Autosave:
     def __init__(self, folder: Path, *, failed: Callable[[str], None]) -> None:
         folder.mkdir(parents=True, exist_ok=True, mode=0o700)
         self._file = folder / f"{os.getpid()}-{secrets.token_hex(4)}.skin"
+        # Held as long as this process lives, however it ends: process numbers come again.
+        self._lock = self._file.with_suffix(".lock").open("w")
+        fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         self._failed = failed
         self._wanted: tuple[Skin, Path | None] | None = None
         self._change = threading.Condition()
@@ -85,7 +90,8 @@ class Autosave:
         with self._change:
             self._wanted = None
             self._change.wait_for(lambda: not self._writing)
-            Left(self._file, None, 0.0).discard()
+            self._file.unlink(missing_ok=True)
+            self._file.with_suffix(".json").unlink(missing_ok=True)
 
     def settle(self, timeout_s: float = 10.0) -> bool:
         """Wait until what was last asked for is written; whether it is."""
@@ -102,6 +108,9 @@ class Autosave:
             self._closed = True
             self._change.notify_all()
         self._thread.join(timeout=10)
+        self._lock.close()
+        if not keep:
+            self._file.with_suffix(".lock").unlink(missing_ok=True)
 
     def _run(self) -> None:
         while True:
@@ -127,8 +136,7 @@ def left_over(folder: Path) -> list[Left]:
     """What runs that are no longer there have left in `folder`, the newest first."""
     found = []
     for file in folder.glob("*.skin"):
-        pid = file.stem.split("-")[0]
-        if pid.isdecimal() and _is_running(int(pid)):
+        if _is_held(file.with_suffix(".lock")):
             continue
         path, when = None, 0.0
         with contextlib.suppress(OSError, ValueError, KeyError, TypeError):  # the note is written after the copy
@@ -138,11 +146,13 @@ def left_over(folder: Path) -> list[Left]:
     return sorted(found, key=lambda left: -left.when)
 
 
-def _is_running(pid: int) -> bool:
+def _is_held(lock: Path) -> bool:
+    """Whether the process that writes the copy is still there."""
     try:
-        os.kill(pid, 0)
-    except ProcessLookupError:
+        with lock.open("r+") as file:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except FileNotFoundError:
         return False
-    except PermissionError:
+    except BlockingIOError:
         return True
-    return True
+    return False

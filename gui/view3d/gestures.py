@@ -59,6 +59,7 @@ class Gestures:
         canvas.bind("<Key-f>", lambda event: self._move_to(view.camera.whole()))
         for number, side in enumerate(SIDES, start=1):
             canvas.bind(f"<Key-{number}>", lambda event, s=side: self._move_to(view.camera.seen_from(s).whole()))  # type: ignore[misc]
+            canvas.bind(f"<Control-Key-{number}>", lambda event: None)  # the window's: Tk would take it for the key alone
         canvas.bind("<Destroy>", lambda event: self._forget(), add=True)
 
     def _press(self, event: tk.Event[tk.Misc]) -> None:

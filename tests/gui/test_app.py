@@ -112,7 +112,7 @@ def test_one_broken_listener_keeps_no_other_from_the_news(start):
     person.app.root.update()
     assert person.view3d.hit_at(*person.see_face(3)).face == 3
     assert "ZeroDivisionError" in (person.app.desk.state / "gui.log").read_text()
-    person.press("F8")
+    person.press("Control-Key-1")
     person.press("Control-d")
     assert person.app.theme is DARK
 

@@ -26,12 +26,12 @@ def picture(person):
 
 def test_each_shading_has_its_key_and_its_tick(cube):
     for k, name in enumerate(SHADINGS):
-        cube.press(f"F{8 + k}")
+        cube.press(f"Control-Key-{k + 1}")
         assert cube.session.shading == name
         assert [a.checked() for a in cube.app.actions.all if a.id.startswith("shade_")] == [s == name for s in SHADINGS]
-    cube.press("F8")
+    cube.press("Control-Key-1")
     plain = picture(cube)
-    cube.press("F10")
+    cube.press("Control-Key-3")
     assert not np.array_equal(plain, picture(cube)), "the checker board is seen"
 
 

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from gui.state.autosave import Autosave, left_over
+from skinfab.document import save_skin
 from skinfab.errors import InputError
 from skinfab.mesh.model import Mesh
 from skinfab.skin import Skin, Source
@@ -44,14 +45,24 @@ def test_the_newest_state_is_kept(autosave, tmp_path):
     (left,) = left_over(tmp_path)
     assert left.load().seed == 4 and left.path == Path("/work/cup.skin") and abs(left.when - time.time()) < 60
     left.discard()
-    assert left_over(tmp_path) == [] and list(tmp_path.iterdir()) == []
+    assert left_over(tmp_path) == [] and not list(tmp_path.glob("*.skin")) and not list(tmp_path.glob("*.json"))
 
 
 def test_nothing_is_left_of_what_was_saved(autosave, tmp_path):
     autosave.keep(SKIN, None)
     autosave.settle()
     autosave.drop()
+    assert [p.suffix for p in tmp_path.iterdir()] == [".lock"], "held until the end"
+    autosave.close()
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_process_number_that_came_again_hides_nothing(tmp_path):
+    """In a container the window often has the number that the one which crashed had."""
+    crashed = tmp_path / f"{os.getpid()}-abcd.skin"
+    save_skin(SKIN, crashed)
+    crashed.with_suffix(".lock").touch()
+    assert [left.file for left in left_over(tmp_path)] == [crashed]
 
 
 def test_a_full_disk_is_said_and_the_next_copy_tried(autosave, tmp_path, monkeypatch):
