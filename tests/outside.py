@@ -83,7 +83,8 @@ class Screen:
         self.auth = folder / "screen.auth"
         self.auth.write_bytes(family + b"".join(struct.pack(">H", len(field)) + field for field in fields))
         read, write = os.pipe()
-        command = ["Xvfb", "-displayfd", str(write), "-screen", "0", "1280x800x24", "-nolisten", "tcp", "-auth", str(self.auth)]
+        # Without -noreset the server would begin anew, and drop the window manager, when a first short client leaves before it has come.
+        command = ["Xvfb", "-displayfd", str(write), "-screen", "0", "1280x800x24", "-nolisten", "tcp", "-noreset", "-auth", str(self.auth)]
         self._server = subprocess.Popen(command, pass_fds=[write], stderr=subprocess.DEVNULL)
         os.close(write)
         with os.fdopen(read) as pipe:
@@ -98,8 +99,14 @@ class Screen:
             stderr=subprocess.DEVNULL,
             text=True,
         )
-        # A window that comes before the window manager would not be fitted to the screen.
-        until(lambda: subprocess.run(["xdotool", "get_desktop"], env=self.env, capture_output=True).returncode == 0, "the window manager")
+        try:
+            # A window that comes before the window manager would not be fitted to the screen.
+            until(
+                lambda: subprocess.run(["xdotool", "get_desktop"], env=self.env, capture_output=True).returncode == 0, "the window manager"
+            )
+        except BaseException:
+            self.close()
+            raise
 
     def ask(self, *words: str) -> str:
         """What Tk gives for a command.

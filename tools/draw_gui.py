@@ -79,7 +79,7 @@ def seams(album: Album, window: Window, skin: Skin) -> None:
     window.drag(OBJECT, low + np.array([12.0, -60.0]), low + np.array([14.0, -170.0]))
     window.wait_kept(lambda s: s.marks is not None, "there is paint")
     album.take(window, "preferences")
-    window.key("F8", "c")
+    window.key("ctrl+1", "c")
     window.click(OBJECT, low)
     window.point(OBJECT, low + 0.75 * (high - low))
     album.take(window, "cut")
@@ -89,11 +89,11 @@ def seams(album: Album, window: Window, skin: Skin) -> None:
     window.wait_kept(lambda s: len(s.seams), "there are seams")
     window.point(".statusbar")
     album.take(window, "pieces")
-    window.key("F9")
+    window.key("ctrl+2")
     album.take(window, "distortion")
-    window.key("F10")
+    window.key("ctrl+3")
     album.take(window, "checker")
-    window.key("F8")
+    window.key("ctrl+1")
 
 
 def at_ends(skin: Skin, camera: Camera) -> np.ndarray:
