@@ -15,6 +15,7 @@ from gui.view2d.live import Findings
 from gui.view2d.marking import HANDLE_RADIUS_PX
 from gui.view2d.replaced import with_sensors
 from skinfab.placement.sensor import Sensor
+from skinfab.skin import Skin
 
 if TYPE_CHECKING:
     from gui.view2d.view import View2D
@@ -57,7 +58,8 @@ class Hands:
         self._grabbed: Grabbed | None = None
         self._panned: tuple[int, int] | None = None
         self._tool_has_it = False
-        self._committed = self._committing = False
+        self._committing = False
+        self._committed: Skin | None = None
         self._event: tuple[int, int, int] | None = None
         self._waiting: str | None = None
         self._resting: str | None = None
@@ -85,16 +87,21 @@ class Hands:
         """Whether the change of the document that is being told is the drag's own."""
         return self._committing
 
+    def document_changed(self) -> None:
+        """Let go of sensors that were changed by someone else: where they were taken hold of is no longer where they are."""
+        if self._grabbed is not None and not self._committing:
+            self.let_go()
+
     def place(self) -> str:
         """Where the pointer is, in words."""
         return self._hit_words
 
     def let_go(self, *, back: bool = False) -> bool:
-        """End a drag; `back` puts everything where it was. Whether there was one."""
+        """End a drag; `back` puts everything where it was before it. Whether there was one."""
         dragged, committed = bool(self.sensors), self._committed
         held = dragged or self.rectangle is not None
         self._drop_hold()
-        if dragged and back and committed:
+        if dragged and back and committed is not None and self._session.skin is committed:
             self._session.undo()
         elif dragged:
             self._view.redraw()
@@ -142,7 +149,7 @@ class Hands:
         ids = {s.id for s in sensors}
         others = tuple(s for s in skin.sensors if s.id not in ids)
         self._grabbed = Grabbed(sensors, at, turning, sheet.offset_of, others)
-        self._committed = False
+        self._committed = None
         self._view.live.prepare(skin, sensors[0].piece)
 
     def _moved(self, event: tk.Event) -> None:
@@ -253,7 +260,7 @@ class Hands:
             return
         verb = "turn" if grabbed.turning else "move"
         what = self.sensors[0].id if len(self.sensors) == 1 else f"{len(self.sensors)} sensors"
-        self._committing = self._committed = True
+        self._committing, self._committed = True, changed
         try:
             self._session.do(f"{verb} {what}", changed, merge=grabbed.key)
         finally:

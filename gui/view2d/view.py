@@ -170,6 +170,7 @@ class View2D(ttk.Frame):
 
     def _on_skin(self) -> None:
         skin = self.session.skin
+        self.hands.document_changed()
         if skin is None:
             self.sheet = None
             self.redraw()

@@ -1,5 +1,7 @@
 """The flat view in a real window, led by mouse and keys."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -88,6 +90,43 @@ def test_escape_takes_a_drag_back(window):
         window.pointer.key("Escape")
         window.pointer.release(x + 60, y + 20)
         assert window.session.skin is before and window.view.hands.sensors == ()
+
+
+@pytest.mark.parametrize("rested", [False, True])
+def test_undo_during_a_drag_ends_it_and_escape_then_takes_nothing_more_back(window, rested):
+    view, first = window.view, window.session.skin
+    x, y = view.place_of("C1")
+    window.session.do("another seed", replace(first, seed=first.seed + 1))
+    second = window.session.skin
+    window.root.update()
+    still = view.surface.picture.copy()
+    window.pointer.press(x, y)
+    window.pointer.move(x + 60, y + 20, 0x100)
+    if rested:
+        window.root.after(200, lambda: window.root.setvar("rested", "1"))
+        window.root.wait_variable("rested")
+    window.session.undo()
+    window.root.update()
+    left = second if rested else first
+    assert window.session.skin is left and view.hands.sensors == ()
+    assert (view.surface.picture[60:, 60:] != still[60:, 60:]).mean() < 0.02  # the sensor is shown where it is
+    window.pointer.key("Escape")
+    window.pointer.move(x + 90, y + 40, 0x100)
+    window.pointer.release(x + 90, y + 40)
+    assert window.session.skin is left and sensor(window).x == 20.0
+
+
+def test_escape_during_a_drag_takes_back_no_step_of_another(window):
+    x, y = window.view.place_of("C1")
+    window.pointer.press(x, y)
+    window.pointer.move(x + 60, y + 20, 0x100)
+    window.root.after(200, lambda: window.root.setvar("rested", "1"))
+    window.root.wait_variable("rested")
+    window.session.do("another seed", replace(window.session.skin, seed=7))
+    assert window.view.hands.sensors == ()
+    window.pointer.key("Escape")
+    window.pointer.release(x + 60, y + 20)
+    assert window.session.skin.seed == 7 and window.session.undo_label == "another seed"
 
 
 def test_a_sensor_is_dropped_on_another_piece(window):
