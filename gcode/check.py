@@ -14,6 +14,7 @@ from gcode.check_balance import balance_findings
 from gcode.check_bead import bead_findings, meant_area
 from gcode.check_blob import blob_findings
 from gcode.check_commands import command_findings
+from gcode.check_dialect import dialect_findings
 from gcode.check_file import file_findings
 from gcode.check_grbl import grbl_findings
 from gcode.check_height import height_findings
@@ -121,7 +122,8 @@ def judge(
         mould = wall = None  # what is told of another piece's mould would be wrong advice
     findings = [
         *(() if fault else file_findings(judged, printer)),
-        *line_findings(text),
+        *(() if printer.spindle else line_findings(text)),
+        *dialect_findings(text, judged, spindle=printer.spindle is not None),
         *judged.faults,
         *(grbl_findings(judged) if printer.spindle else command_findings(judged, printer)),
         *(() if printer.spindle else setting_findings(judged, printer)),

@@ -146,6 +146,15 @@ def _heats(command: Command, _: State) -> bool:
     return "I" in command.words or any((command.words.get(letter) or 0.0) > 0 for letter in "SR")
 
 
+def _waits_for_warmth(command: Command, _: State) -> bool:
+    """With S until the probe is as warm, with R until it is as cold, too."""
+    return bool(command.words.get("S")) or "R" in command.words
+
+
+def _cancels(command: Command, state: State) -> bool:
+    return state.ink_follows and bool(command.words.keys() & {"C", "P"})
+
+
 def _shifts(command: Command, state: State) -> str:
     by_hand = {"xyz": "", "xy": "Z", "none": "XYZ"}[state.printer.home]
     return " and ".join(axis for axis in by_hand if axis in command.words)
@@ -252,6 +261,13 @@ RULES = (
         "{code} heats, and silicone sets early where it is warm",
         "take it out; the print is cold throughout",
     ),
+    Rule(
+        ("M192",),
+        _waits_for_warmth,
+        "{code} waits until the probe has a temperature, in a cold print for ever, and the silicone sets meanwhile",
+        "take it out; the print is cold throughout",
+    ),
+    Rule(("M486",), _cancels, "{code} cancels an object: moves that follow are not printed", "take it out, with its C or P"),
     Rule(TUNERS, _always, "{code} heats to tune a heater, and silicone sets early where it is warm", "take it out"),
     Rule(SHIFTS, _shifts, "{code} shifts the {text} that was set by hand", "send it before the start, not in the file"),
     Rule(("G92.1",), _shifts_all, "{code} undoes the Z that was set by hand", "send it before the start, not in the file"),

@@ -24,6 +24,7 @@ MOTORS_OFF = frozenset({"M18", "M84"})
 #: Commands whose words are read; any other line (messages, fans) is passed over as it stands.
 READ = HEATERS | SETTINGS | MOTORS_OFF | {"G0", "G1", "G2", "G3", "G4", "G5", "G20", "G21", "G28", "G90", "G91", "G92"}
 READ |= {
+    "M192",
     "M3",
     "M4",
     "M5",
@@ -42,14 +43,15 @@ READ |= {
     "M401",
     "M420",
     "M425",
+    "M486",
     "M900",
     "M906",
 }
 #: Codes of lines without a G, M or T: one that goes on with the last motion, and one that sets F or S and moves nothing.
 MODAL, SETTING = "X", "F"
 
-_FLAGS = MOTORS_OFF | {"G28", "M420", "M425"}
-_TAKE_T = HEATERS | SETTINGS | {"M206", "M218", "M221", "M420", "M900", "M906"}
+_FLAGS = MOTORS_OFF | {"G28", "M420", "M425", "M486"}
+_TAKE_T = HEATERS | SETTINGS | {"M206", "M218", "M221", "M420", "M486", "M900", "M906"}
 
 #: A line beyond this is not G-code, and a file beyond that is not a skin's.
 LINE_LIMIT, FILE_LIMIT = 4096, 256 * 2**20
@@ -61,6 +63,8 @@ _WORD = re.compile(r"\s*([A-Z])\s*([-+]?(?:\d+\.?\d*|\.\d+))?", re.IGNORECASE)
 #: Words as nearly every line has them, so short that each number is finite.
 _PLAIN = re.compile(r"(?:\s*[A-FH-LN-SU-Z]\s*[-+]?(?:\d{1,99}(?:\.\d{0,99})?|\.\d{1,99}))*\s*")
 _PLAIN_WORD = re.compile(r"([A-Z])\s*([-+.\d]+)")
+#: Of an object (M486): it comes last, as `A"name"` or `Aname`.
+_NAME = re.compile(r"[Aa\"].*")
 _BRACKETS = re.compile(r"\([^()]*\)")
 #: What GRBL passes over (its protocol.c): a bracket up to the next closing one or the line's end, and all behind a semicolon.
 _PASSED_OVER = re.compile(r"\([^)]*\)?|;(.*)")
@@ -174,8 +178,10 @@ def _uncommented(raw: str) -> tuple[str, str, str]:
 def _command(body: str, line: int, *, blocks: bool) -> tuple[str, dict[str, float | None]]:
     found = _COMMAND.match(body)
     if found and (blocks or found[1] not in "Oo"):  # a program's number, which GRBL refuses: told as such
-        code = _code(*found.groups())
-        return code, _words(body[found.end() :], line, code) if code in READ else {}
+        code, rest = _code(*found.groups()), body[found.end() :]
+        if code == "M486":
+            rest = _NAME.sub("", rest)
+        return code, _words(rest, line, code) if code in READ else {}
     if bare := _BARE.match(body):
         words = _words(body[bare.end() :], line, MODAL)
         return SETTING if words.keys() <= {"F", "S"} else MODAL, words

@@ -14,8 +14,10 @@ from skinfab.readout.bridge import at_rest
 from skinfab.readout.frame import Recording, Stream
 from skinfab.wiring import Wire, board_of, read_wiring, wiring
 
-#: Kilohms of what a channel may be measured in.
-_KOHM = {"kohm": 1.0, "ohm": 1e-3}
+#: Kilohms of what a channel may be measured in, in small letters; the sign of the ohm and the Greek letter are the same then.
+_KOHM = {"kohm": 1.0, "ohm": 1e-3, "k\u03c9": 1.0, "\u03c9": 1e-3}
+#: So many channels are named.
+_NAMED = 4
 
 
 @dataclass(frozen=True)
@@ -147,13 +149,41 @@ def rests(recording: Recording, wires: Sequence[Wire], *, known: Mapping[str, fl
         channel = recording.stream.channels[recording.stream.index(wire.sensor)]
         if channel.name in known:
             measured = known[channel.name]
-        elif channel.unit in _KOHM:
+        elif (unit := channel.unit.lower()) in _KOHM:
             readings = recording.column(channel.name)
-            measured = _KOHM[channel.unit] * at_rest(readings, rate).level if np.isfinite(readings).any() else math.nan
+            measured = _KOHM[unit] * at_rest(readings, rate).level if np.isfinite(readings).any() else math.nan
         else:
             continue
         out.append(AtRest(wire.sensor, measured, wire.low, wire.median, wire.high))
     return tuple(out)
+
+
+def unit_notes(stream: Stream, wires: Sequence[Wire]) -> list[str]:
+    """One sentence where resistances are predicted for channels whose unit is missing, or of ohms that `rests` does not know.
+
+    Volts and the like are other than resistances, and nobody expects a comparison.
+
+    Examples
+    --------
+    >>> from skinfab.readout.frame import Channel
+    >>> wires = [Wire("C7-1", "C7", "contact-spiral", "P1", 1, "signal", 2.0, 3.0, 0, 1, 0, "kohm", 49.0, 154.0, 487.0)]
+    >>> unit_notes(Stream("skin", (Channel("C7", "kohm"),)), wires)
+    []
+    >>> print(*unit_notes(Stream("skin", (Channel("C7"),)), wires))
+    C7 is not said to be in kohm or ohm, so its resistance at rest is not compared with the predicted one; a heading gives its unit in \
+brackets: C7[kohm]
+    """
+    predicted = [wire.sensor for wire in wires if wire.terminal == 1 and wire.unit == "kohm"]
+    units = {sensor: stream.channels[stream.index(sensor)].unit.lower() for sensor in predicted}
+    bare = [s for s, unit in units.items() if not unit or (unit not in _KOHM and unit.endswith(("ohm", "ohms", "\u03c9")))]
+    if not bare:
+        return []
+    named = ", ".join(bare[:_NAMED]) + (f" and {len(bare) - _NAMED} more" if len(bare) > _NAMED else "")
+    are, its = ("is", "its") if len(bare) == 1 else ("are", "their")
+    return [
+        f"{named} {are} not said to be in kohm or ohm, so {its} resistance at rest is not compared with the predicted one; a heading gives "
+        f"its unit in brackets: {bare[0]}[kohm]"
+    ]
 
 
 def rest_facts(found: Sequence[AtRest]) -> list[dict[str, str | float | None]]:

@@ -20,7 +20,7 @@ from skinfab.readout.frame import Channel, Recording, Stream
 from skinfab.readout.logs.log import read_log, write_log
 from skinfab.readout.pty_server import PtyServer
 from skinfab.skin import Skin, Source
-from skinfab.wired import load_wiring, rests, wired
+from skinfab.wired import load_wiring, rests, unit_notes, wired
 from skinfab.wiring import Wire, write_wiring
 
 
@@ -88,6 +88,30 @@ def test_resistances_at_rest_beside_the_predicted_ones() -> None:
     assert (volts.measured, volts.verdict) == (77.0, "")
 
 
+def test_channels_without_a_unit_of_resistance_are_said() -> None:
+    table = wires(a=0, b=1, c=2, d=3, e=4, f=5)
+    known, _ = wired(stream("kohm", "kOhm", "k\u2126", "\u03a9", "V", "pF"), table)
+    assert unit_notes(known, table) == []
+    found = rests(still(known, 180.0, 180.0, 180.0, 18e4, 1.0, 9.0), table)
+    assert [each.measured for each in found] == pytest.approx([180] * 4, rel=1e-3)
+    (note,) = unit_notes(wired(stream("kohm", "V", "Mohm", "", "V", "V"), table)[0], table)
+    assert note.startswith("c, d are not said to be in kohm or ohm, so their resistance") and note.endswith("in brackets: c[kohm]")
+    (note,) = unit_notes(wired(stream(*[""] * 6), table)[0], table)
+    assert note.startswith("a, b, c, d and 2 more are not said")
+
+
+@pytest.mark.parametrize("command", ["replay", "contact"])
+def test_headings_tell_the_unit_in_brackets(tmp_path: Path, table: Path, capsys: pytest.CaptureFixture[str], command: str) -> None:
+    rows = still(stream("", "", ""), 180.0, 9000.0, 150.0).values
+    for heads, noted in (("ch0_kohm,ch1_kohm,ch2_kohm", True), ("ch0[kohm],ch1 (kohm),ch2 [kOhm]", False)):
+        lines = "".join(f"{k / 50:.2f},{','.join(f'{each:.4f}' for each in row)}\n" for k, row in enumerate(rows.tolist()))
+        (tmp_path / "a.csv").write_text(f"time_s,{heads}\n{lines}")
+        assert main([command, str(tmp_path / "a.csv"), "--wiring", str(table), "-o", str(tmp_path / "out")]) == 0
+        err = capsys.readouterr().err
+        assert ("C1, S1, C9 are not said to be in kohm or ohm" in err) == noted
+        assert ("S1 reads 9000 kohm at rest" in err) != noted
+
+
 def test_a_skin_document_in_place_of_the_table(tmp_path: Path) -> None:
     V, F = np.array([[0.0, 0, 0], [90, 0, 0], [90, 90, 0], [0, 90, 0]]), np.array([[0, 1, 2], [0, 2, 3]])
     sensor = Sensor("C5", "P1", ContactSpiral(n=2, x=1.7, b=1.5, l=3, s=15), 10.0, 30.0, 0.0, 5)
@@ -138,3 +162,24 @@ def test_contact_names_sensors(tmp_path: Path, table: Path, capsys: pytest.Captu
     assert main(["contact", str(tmp_path / "a.csv"), "--wiring", str(table), "-o", str(tmp_path / "out")]) == 0
     out = capsys.readouterr()
     assert "a.csv: S1 reads 9000 kohm at rest" in out.err and "  C9 " in out.out
+
+
+@pytest.mark.parametrize("unit", ["kohm", ""])
+def test_contact_names_the_sensors_of_a_port(tmp_path: Path, table: Path, capsys: pytest.CaptureFixture[str], unit: str) -> None:
+    of, words = stream(unit, unit, unit), ["--wiring", str(table), "--seconds", "5", "--json", "-o", str(tmp_path / "out")]
+    with PtyServer(of, iter(still(of, 180.0, 9000.0, 150.0))) as device:
+        assert main(["contact", str(device.path), *words]) == 0
+    result = json.loads(capsys.readouterr().out)
+    (found,) = result["objects"].values()
+    assert [each["channel"] for each in found["table"]] == ["C1", "S1", "C9"]
+    assert any("S1 reads 9000 kohm" in note for note in result["notes"]) == bool(unit)
+    assert any("are not said to be in kohm" in note for note in result["notes"]) != bool(unit)
+
+
+def test_contact_refuses_a_port_of_another_skin(tmp_path: Path, table: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    of = stream("kohm")
+    with PtyServer(of, iter(still(of, 180.0))) as device:
+        assert main(["contact", str(device.path), "--wiring", str(table), "--seconds", "2", "-o", str(tmp_path / "out")]) == 1
+    assert "but by the wiring S1 is channel 1" in capsys.readouterr().err
+    assert main(["contact", "simulator", "--wiring", str(table), "-o", str(tmp_path / "out")]) == 2
+    assert "--wiring is for logs and ports" in capsys.readouterr().err and not (tmp_path / "out").exists()

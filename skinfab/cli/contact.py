@@ -68,7 +68,10 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         help="watch this channel; may be given again (default: contact sensors, or all there are)",
     )
     p.add_argument(
-        "--wiring", metavar="FILE", type=Path, help="of logs: wiring.csv of the skin, or its .skin; channels get their sensors' names"
+        "--wiring",
+        metavar="FILE",
+        type=Path,
+        help="of logs or a port: wiring.csv of the skin, or its .skin; channels get their sensors' names",
     )
     p.add_argument("--object", choices=(*OBJECTS, "all"), help=f"of the {SIMULATOR} (default: all)")
     p.add_argument("--trials", metavar="N", type=steps.seed, help=f"of the {SIMULATOR}, per object (default: 5)")
@@ -113,7 +116,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 #: Options that not every kind of source has.
-_ONLY = {"wiring": "log", "object": SIMULATOR, "trials": SIMULATOR, "seed": SIMULATOR, "seconds": "port", "baud": "port"}
+_ONLY = {"object": SIMULATOR, "trials": SIMULATOR, "seed": SIMULATOR, "seconds": "port", "baud": "port"}
 
 
 def _kind(args: argparse.Namespace) -> str:
@@ -125,6 +128,8 @@ def _kind(args: argparse.Namespace) -> str:
     for name, only in _ONLY.items():
         if getattr(args, name) is not None and kind != only:
             args.wrong_usage(f"--{name} is for the {only}, not for a {kind}")
+    if kind == SIMULATOR and args.wiring:
+        args.wrong_usage(f"--wiring is for logs and ports; the {SIMULATOR}'s channels have their sensors' names")
     if kind == SIMULATOR and args.channel:
         args.wrong_usage(f"--channel is for logs and ports; the {SIMULATOR}'s channels are all contact sensors")
     if args.trials == 0:
@@ -134,9 +139,11 @@ def _kind(args: argparse.Namespace) -> str:
 
 def _watched(args: argparse.Namespace) -> tuple[dict[str, list[Trial]], list[str]]:
     from skinfab.cli.contact_port import watch_port
+    from skinfab.wired import load_wiring
 
+    wires = load_wiring(args.wiring) if args.wiring else ()
     recording, found, notes = watch_port(
-        args.logs[0], baud=args.baud, seconds=args.seconds, false_alarms=args.false_alarms, channels=args.channel
+        args.logs[0], baud=args.baud, seconds=args.seconds, false_alarms=args.false_alarms, channels=args.channel, wires=wires
     )
     return {recording.stream.name: [Trial(recording.stream.name, "", recording, found)]}, notes
 
@@ -150,7 +157,7 @@ def _logged(args: argparse.Namespace) -> tuple[dict[str, list[Trial]], list[str]
 
     wires: tuple[Wire, ...] = ()
     if args.wiring:
-        from skinfab.wired import load_wiring, rests, wired
+        from skinfab.wired import load_wiring, rests, unit_notes, wired
 
         wires = load_wiring(args.wiring)
     trials, notes = [], []
@@ -162,6 +169,7 @@ def _logged(args: argparse.Namespace) -> tuple[dict[str, list[Trial]], list[str]
             if wires:
                 stream, told = wired(log.recording.stream, wires)
                 log = replace(log, recording=replace(log.recording, stream=stream))
+                told += unit_notes(stream, wires)
                 told += [each.verdict for each in rests(log.recording, wires) if each.verdict]
                 notes += [f"{log.file}: {each}" for each in told]
             try:

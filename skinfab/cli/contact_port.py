@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from calibration.contact.detector import Contact, ContactDetector, Detection
     from skinfab.readout.frame import Frame, Recording
     from skinfab.readout.serial_port import SerialPort
+    from skinfab.wiring import Wire
 
 #: How long to wait for a frame before looking whether time is up, s.
 _WAIT_S = 0.2
@@ -25,26 +26,37 @@ _NAMED_S = 10.0
 
 
 def watch_port(
-    port: str, *, baud: int | None, seconds: float | None, false_alarms: float, channels: Sequence[str] | None
+    port: str,
+    *,
+    baud: int | None,
+    seconds: float | None,
+    false_alarms: float,
+    channels: Sequence[str] | None,
+    wires: Sequence[Wire] = (),
 ) -> tuple[Recording, Detection, list[str]]:
     """Watch a port until Ctrl-C, or for a while: its frames, the contacts in them, and what is to be said of it.
 
     Where what it sends does not say how many frames come a second, as plain lines do not, they are counted first.
+    With `wires` its channels are called after their sensors, and what they read at rest is compared with what was predicted.
 
     Raises
     ------
     InputError
-        It cannot be opened, sends nothing, too little to know its rate, or has no such channel.
+        It cannot be opened, sends nothing, too little to know its rate, has no such channel, or is not the skin of those wires.
     """
     from calibration.contact.detector import ContactDetector
     from skinfab.errors import InputError
     from skinfab.readout.frame import Recording
     from skinfab.readout.serial_port import BAUD, SerialPort
+    from skinfab.wired import rests, unit_notes, wired
 
     frames: list[Frame] = []
     notes: list[str] = []
     with SerialPort(port, baud=baud or BAUD) as source:
         stream, end = source.stream, time.monotonic() + (seconds or math.inf)
+        if wires:
+            stream, told_of = wired(stream, wires)
+            notes += told_of
         if not stream.rate_hz:
             stream = replace(stream, rate_hz=_counted(source, frames, end))
             notes.append(f"{port} does not say how many frames come a second; {stream.rate_hz:.4g} were counted")
@@ -65,7 +77,10 @@ def watch_port(
     notes += [
         f"{count} frames were {how}" for how, count in (("lost", counts.lost), ("damaged", counts.bad), ("late", counts.late)) if count
     ]
-    return Recording.of_frames(stream, frames), watch.found(), notes
+    recording = Recording.of_frames(stream, frames)
+    if wires:
+        notes += [*unit_notes(stream, wires), *(each.verdict for each in rests(recording, wires) if each.verdict)]
+    return recording, watch.found(), notes
 
 
 def _counted(source: SerialPort, frames: list[Frame], end: float) -> float:

@@ -258,9 +258,10 @@ def _notes(counts: dict[str, int], path: Path, size: int, wires: tuple[Wire, ...
         recording = read_log(path).recording
         notes += check(recording)
         if wires:
-            from skinfab.wired import rests
+            from skinfab.wired import rests, unit_notes
 
             rest = rests(recording, wires)
+            notes += unit_notes(recording.stream, wires)
             notes += [each.verdict for each in rest if each.verdict]
     return notes, rest
 

@@ -91,9 +91,10 @@ def run(args: argparse.Namespace) -> int:
     }
     table: list[str] = []
     if wires:
-        from skinfab.wired import rest_facts, rest_lines, rests
+        from skinfab.wired import rest_facts, rest_lines, rests, unit_notes
 
         rest = rests(log.recording, wires, known={name: math.nan if r is None else r for name, r in facts.get("r0_kohm", {}).items()})
+        notes += [] if args.bridge else unit_notes(log.recording.stream, wires)
         notes += [each.verdict for each in rest if each.verdict]
         result["at_rest"], table = rest_facts(rest), rest_lines(rest)
     if args.output:

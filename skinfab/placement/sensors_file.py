@@ -146,7 +146,7 @@ def _auto(table: Any, where: str) -> AutoOptions:
             raise InputError(f"{where}: sizes is {table['sizes']!r}; it must be a list of diameters, mm")
         options["sizes"] = tuple(_number(s, "sizes", where) for s in table["sizes"])
     if "per_piece" in table:
-        options["per_piece"] = _count(table["per_piece"], "per_piece", where)
+        options["per_piece"] = _count(table["per_piece"], "per_piece", where, least=1)
     try:
         return AutoOptions(**options)
     except InputError as fault:
@@ -259,9 +259,9 @@ def _direction(pose: Mapping[str, Any], name: str, where: str) -> Vector:
     return x / length, y / length, z / length
 
 
-def _count(value: Any, name: str, where: str) -> int:
-    if isinstance(value, bool) or not isinstance(value, int) or value < 0:
-        raise InputError(f"{where}: {name} is {value!r}; it must be a whole number, 0 or more")
+def _count(value: Any, name: str, where: str, *, least: int = 0) -> int:
+    if isinstance(value, bool) or not isinstance(value, int) or value < least:
+        raise InputError(f"{where}: {name} is {value!r}; it must be a whole number, {least} or more")
     return value
 
 

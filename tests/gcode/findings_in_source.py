@@ -12,6 +12,7 @@ MODULES = {
     "check_file": "the whole file",
     "trace": "wording",
     "check_lines": "checksums",
+    "check_dialect": "brackets, case, asterisks",
     "check_commands": "commands, Marlin",
     "check_settings": "limits, Marlin",
     "check_grbl": "commands, GRBL",

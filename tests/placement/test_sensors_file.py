@@ -67,7 +67,7 @@ def test_the_example_of_the_user_guide(tmp_path: Path) -> None:
         ('[auto]\nkinds = "strain-lines"', "kinds is 'strain-lines'; it must be a list"),
         ('[auto]\nkinds = ["strain"]', "knows no kind 'strain'"),
         ("[auto]\nsizes = [-3]", "sizes are"),
-        ("[auto]\nper_piece = 1.5", "per_piece is 1.5"),
+        *((f"[auto]\nper_piece = {n}", f"per_piece is {n}; it must be a whole number, 1 or more") for n in (1.5, -1, 0)),
     ],
 )
 def test_mistakes_are_named(tmp_path: Path, text: str, says: str) -> None:
