@@ -88,8 +88,8 @@ class App:
         root.geometry(on_screen(remembered.geometry, root.winfo_screenwidth(), root.winfo_screenheight()) or FIRST_SIZE)
         self.theme = THEMES[remembered.theme]
         apply(root, self.theme)
-        self.session, self.derived, self.shelf = Session(), Derived(), ProfileShelf()
         self.background = Background(root)
+        self.session, self.derived, self.shelf = Session(), Derived(self.background), ProfileShelf()
         self.autosave = Autosave(state / "autosave", failed=self._autosave_failed)
         self.runner = Runner(root, changed=self._progress, log=self._log)
         self.desk = Desk(

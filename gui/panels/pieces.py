@@ -42,6 +42,8 @@ class PiecesPanel(ttk.Frame):
 
     def _refresh(self) -> None:
         skin = self._session.skin
+        if skin is not None and not self._derived.ready(skin, self._refresh):
+            return
         self.list.delete(*self.list.get_children())
         if skin is None:
             self.summary.set("Nothing is open.")

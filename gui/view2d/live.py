@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from gcode.used import used_by, with_room_for_nozzle
+from gui.state.derived import Part
 from gui.state.problem import Problem
 from gui.state.selection import Target
 from skinfab.errors import SkinfabError
@@ -60,6 +61,11 @@ class Live:
         checker = self._for(skin)
         if checker is not None and any(p.id == piece for p in skin.pieces):
             checker.prepare(skin.piece(piece))
+
+    def parts(self, skin: Skin) -> Iterable[Part]:
+        """What a first check of each piece would wait for."""
+        for piece in {s.piece: p for s in skin.sensors for p in skin.pieces if p.id == s.piece}.values():
+            yield Part("checked", (piece, skin.printer, skin.material), len(piece.F), lambda id=piece.id: self.prepare(skin, id))  # type: ignore[misc]
 
     def problems(self, skin: Skin) -> list[Problem]:
         """The findings as lines of the problems list; of two sensors too close to each other once."""

@@ -71,6 +71,11 @@ class Sheet:
         self.owner = np.repeat(np.arange(len(skin.pieces)), [len(p.F) for p in skin.pieces])
         self._index = {p.id: k for k, p in enumerate(skin.pieces)}
 
+    def prepared(self) -> Sheet:
+        """Itself, with all there is to know of it known."""
+        assert self.sides is not None and self.edges is not None
+        return self
+
     @property
     def box(self) -> tuple[Float, Float]:
         """Lower left and upper right corner of all pieces, mm of the sheet."""

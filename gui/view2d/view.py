@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tkinter as tk
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from tkinter import ttk
 
@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gui.shades import face_colours
-from gui.state.derived import Derived
+from gui.state.derived import Derived, Part
 from gui.state.session import Session
 from gui.theme import Theme
 from gui.view2d.background import BAR_PX, RULER_PX, Ground, paint_faces, paint_frame, paint_lines, paint_names
@@ -26,6 +26,7 @@ from gui.view2d.plane import Plane
 from gui.view2d.sheet import Sheet
 from gui.view2d.surface import Surface
 from skinfab.placement.sensor import Sensor
+from skinfab.skin import Skin
 
 Float = NDArray[np.float64]
 
@@ -81,6 +82,8 @@ class View2D(ttk.Frame):
             session.listen(topic, callback)  # type: ignore[arg-type]
         session.listen("selection", self._on_selection)
         session.listen("hover", self.surface.refresh)
+        self._skin: Skin | None = None
+        derived.needs(self._parts)
         self._on_skin()
 
     # What is seen
@@ -138,8 +141,8 @@ class View2D(ttk.Frame):
 
     def hit(self, x: int, y: int) -> Hit2D | None:
         """What is under an event's place; None before anything is opened."""
-        skin, sheet = self.session.skin, self.sheet
-        if skin is None or sheet is None:
+        skin, sheet = self._skin, self.sheet
+        if skin is None or sheet is None or skin is not self.session.skin:
             return None
         at = self.plane.to_mm(self.pixel(x, y))
         return hit(skin, sheet, self.lines, at, self.triangle(x, y), reach=self.mm(REACH_PX))
@@ -151,7 +154,7 @@ class View2D(ttk.Frame):
 
     def handle(self) -> tuple[Sensor, Float] | None:
         """The sensor that has a handle to turn it, and where that is, mm of the sheet."""
-        skin, target = self.session.skin, self.session.selected
+        skin, target = self._skin, self.session.selected
         if skin is None or self.sheet is None or target.also:
             return None
         for sensor in skin.sensors:
@@ -161,8 +164,8 @@ class View2D(ttk.Frame):
 
     def place_of(self, sensor: str) -> tuple[int, int]:
         """Where the middle of a sensor is, as events count: for a menu or a test."""
-        assert self.session.skin is not None and self.sheet is not None
-        (found,) = (s for s in self.session.skin.sensors if s.id == sensor)
+        assert self._skin is not None and self.sheet is not None
+        (found,) = (s for s in self._skin.sensors if s.id == sensor)
         x, y = self.plane.to_px(self.lines.middle(found, self.sheet))
         return round(x), round(self.surface.size[1] - y)
 
@@ -172,16 +175,25 @@ class View2D(ttk.Frame):
         skin = self.session.skin
         self.hands.document_changed()
         if skin is None:
-            self.sheet = None
+            self._skin = self.sheet = None
             self.redraw()
             return
-        if self.sheet is None or self.sheet.pieces is not skin.pieces or self.sheet.mesh is not skin.mesh:
-            self.sheet = Sheet(skin, self.derived)
+        if not self.derived.ready(skin, self._on_skin):
+            return  # until it can be shown, the one before stays
+        self._skin = skin
+        sheet = self.derived.once("sheet view", _sheet_of(skin), lambda: Sheet(skin, self.derived))
+        if self.sheet is not sheet:
+            self.sheet = sheet
             self._shown.clear()
         self.live.look(skin)
         self.session.report("sensors", self.live.problems(skin))
         if not self.hands.changes_skin():
             self.redraw()
+
+    def _parts(self, skin: Skin) -> Iterable[Part]:
+        """What takes long of what this view shows."""
+        yield Part("sheet view", _sheet_of(skin), sum(len(p.F) for p in skin.pieces) // 4, lambda: Sheet(skin, self.derived).prepared())
+        yield from self.live.parts(skin)
 
     def _on_selection(self) -> None:
         # The rulers count from the selected piece.
@@ -200,15 +212,21 @@ class View2D(ttk.Frame):
         """Id of the piece whose frame the rulers show."""
         pieces = () if self.sheet is None else self.sheet.pieces
         chosen = self.session.selected.piece
-        if self.session.selected.sensor and self.session.skin is not None:
-            chosen = next((s.piece for s in self.session.skin.sensors if s.id == self.session.selected.sensor), chosen)
+        if self.session.selected.sensor and self._skin is not None:
+            chosen = next((s.piece for s in self._skin.sensors if s.id == self.session.selected.sensor), chosen)
         return next((p.id for p in pieces if p.id == chosen), pieces[0].id if pieces else "")
 
     def _draw_still(self, pen: Pen) -> None:
-        skin, sheet = self.session.skin, self.sheet
+        skin, sheet = self._skin, self.sheet
         if skin is None or sheet is None or not skin.pieces:
             pen.box((0, 0, pen.width, pen.height), self.theme.view)
-            words = "open a mesh or a skin document" if skin is None else "no flat pieces yet: cut the object"
+            words = (
+                ""
+                if self.session.skin is not skin
+                else "open a mesh or a skin document"
+                if skin is None
+                else "no flat pieces yet: cut the object"
+            )
             pen.text((pen.width / 2, pen.height / 2), words, self.theme.faint, size=13)
             self._triangles = np.full((pen.height, pen.width), -1, dtype=np.int32)
             self._face = ()
@@ -234,7 +252,7 @@ class View2D(ttk.Frame):
         paint_frame(ground, pen)
 
     def _draw_moving(self, pen: Pen) -> None:
-        skin, sheet = self.session.skin, self.sheet
+        skin, sheet = self._skin, self.sheet
         if skin is None or sheet is None:
             return
         marker, hands = self._marker(pen, sheet), self.hands
@@ -269,3 +287,7 @@ class View2D(ttk.Frame):
         px = self.plane.to_px(sheet.UV)
         fill(np.stack([px[:, 0], height - px[:, 1]], axis=1), sheet.F, self._triangles)
         self._face = now
+
+
+def _sheet_of(skin: Skin) -> tuple[object, ...]:
+    return skin.mesh, skin.pieces

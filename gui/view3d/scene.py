@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable
+from collections.abc import Callable, Hashable, Iterable
 from typing import TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gui.shades import CHECK_MM, face_colours
-from gui.state.derived import Derived
+from gui.state.derived import Derived, Part
 from gui.state.selection import NOTHING, Target
 from gui.state.session import Session
 from gui.theme import LIGHT, Theme, rgb
@@ -17,6 +17,8 @@ from gui.view3d.lines import Strokes
 from gui.view3d.marks import SeamLabels, SeamLines, outline, sensor_strokes
 from gui.view3d.painter import Spots
 from gui.view3d.shade import Paint
+from gui.view3d.solid import Solid
+from skinfab.mesh.model import Mesh
 from skinfab.skin import Skin
 
 T = TypeVar("T")
@@ -112,7 +114,18 @@ class Scene:
 
     def labels(self, skin: Skin) -> SeamLabels:
         """Numbers of seams."""
-        return self._once("labels", (), (skin.object, *skin.pieces), lambda: SeamLabels.of(skin))
+        return self._derived.once("seam labels", (skin.object, *skin.pieces), lambda: SeamLabels.of(skin))
+
+    def solid(self, mesh: Mesh) -> Solid:
+        """The object as it is drawn."""
+        return self._derived.once("solid", (mesh,), lambda: Solid.of(mesh))
+
+    @staticmethod
+    def parts(skin: Skin) -> Iterable[Part]:
+        """What takes long of all this."""
+        mesh = skin.object
+        yield Part("solid", (mesh,), len(mesh.F), lambda: Solid.of(mesh))
+        yield Part("seam labels", (mesh, *skin.pieces), 0, lambda: SeamLabels.of(skin))
 
     def owner(self, skin: Skin) -> NDArray[np.int64]:
         """(m,) position of each face's piece, -1 where it has none."""

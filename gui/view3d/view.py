@@ -41,7 +41,7 @@ _SAMPLES = 6_400_000
 #: How near the pointer must come to a line, pixels at 96 dots per inch.
 _REACH = 5
 
-_EMPTY = "Open a mesh or a skin document"
+_EMPTY, _SOON = "Open a mesh or a skin document", "Drawing it \N{HORIZONTAL ELLIPSIS}"
 
 
 class View3D(ttk.Frame):
@@ -107,8 +107,13 @@ class View3D(ttk.Frame):
         Gestures(self)
         self.canvas.bind("<Configure>", self._configured, add=True)
         self.bind("<Destroy>", self._destroyed, add=True)
-        for topic in ("skin", "selection", "hover", "shading"):
+        self._skin: Skin | None = None
+        self._derived = derived
+        derived.needs(self.scene.parts)
+        session.listen("skin", self._on_skin)
+        for topic in ("selection", "hover", "shading"):
             session.listen(topic, self.redraw)
+        self._on_skin()
         self.restyle(theme)
         # Loading what is compiled takes half a second: while the window is still empty, not when there is something to show.
         threading.Thread(target=warm, daemon=True).start()
@@ -154,8 +159,10 @@ class View3D(ttk.Frame):
 
     def hit_at(self, x: int, y: int) -> Hit | None:
         """What is at a pixel of the canvas as it was drawn last; None beside the object."""
-        skin = self.session.skin
-        if skin is None or self._solid is None or self._mesh is not skin.object or self.painter.camera is None:
+        skin = self._skin
+        if skin is None or skin is not self.session.skin or self._solid is None or self._mesh is not skin.object:
+            return None
+        if self.painter.camera is None:
             return None
         return hit(skin, self.painter, self.scene.owner(skin), x, y, reach=round(_REACH * self.dpi))
 
@@ -186,6 +193,13 @@ class View3D(ttk.Frame):
 
     # How it draws
 
+    def _on_skin(self) -> None:
+        """Take the session's document as soon as it can be shown; until then, the one before stays."""
+        skin = self.session.skin
+        if not self._gone and (skin is None or self._derived.ready(skin, self._on_skin)):
+            self._skin = skin
+            self.redraw()
+
     def _draw_idle(self) -> None:
         self._idle = ""
         self._draw()
@@ -203,8 +217,9 @@ class View3D(ttk.Frame):
         width, height = self.canvas.winfo_width(), self.canvas.winfo_height()
         if width < 8 or height < 8:
             return  # not on the screen yet
-        skin = self.session.skin
-        self._furniture.notice(_EMPTY if skin is None else "", self.theme)
+        skin = self._skin
+        words = _EMPTY if self.session.skin is None else _SOON
+        self._furniture.notice(words if skin is None else "", self.theme)
         if skin is None:
             self._mesh = self._solid = self._detail = None
             self.canvas.itemconfigure(self._picture, state="hidden")
@@ -222,7 +237,7 @@ class View3D(ttk.Frame):
         """Prepare what follows from the object and the window's size."""
         if self._mesh is not skin.object:
             known = self._mesh is not None and self._mesh.F is skin.object.F
-            self._mesh, self._solid, self._slow = skin.object, Solid.of(skin.object), False
+            self._mesh, self._solid, self._slow = skin.object, self.scene.solid(skin.object), False
             self._detail = Detail(skin.object)
             if not known:
                 self.camera = Camera.fitted(skin.object.V[skin.object.topology.used_vertices], width, height)

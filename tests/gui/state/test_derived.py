@@ -5,6 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+import gui.state.derived as derived_module
+from gui.jobs.worker import Outcome
 from gui.state.derived import Derived
 from skinfab.mesh.model import Mesh
 from skinfab.patterns.registry import make_pattern
@@ -55,3 +57,64 @@ def test_no_pieces_have_no_sheet(skin):
     derived = Derived()
     assert derived.offsets(()) == {}
     assert derived.offsets(skin.pieces)["P1"].tolist() == [0.0, 0.0]
+
+
+class Later:
+    """Answers when it is told to; the newest question of a key alone, as the window's own does."""
+
+    def __init__(self):
+        self.asked = {}
+
+    def ask(self, key, question, answered):
+        self.asked[key] = question, answered
+
+    def answer(self, sentence=""):
+        for question, answered in [self.asked.pop(key) for key in list(self.asked)]:
+            if not sentence:
+                question()
+            answered(Outcome(sentence=sentence))
+
+
+@pytest.fixture
+def later(skin, monkeypatch):
+    monkeypatch.setattr(derived_module, "AT_ONCE", 1)  # every document is a large one
+    asker = Later()
+    return Derived(asker), asker
+
+
+def test_a_large_document_is_ready_once_its_parts_were_made_elsewhere(skin, later, monkeypatch):
+    derived, asker = later
+    told = []
+    assert not derived.ready(skin, lambda: told.append("one")) and not derived.ready(skin, lambda: told.append("two"))
+    assert told == []
+    asker.answer()
+    assert told == ["one", "two"] and derived.ready(skin, lambda: None) and asker.asked == {}
+    monkeypatch.setattr(derived_module, "measure", None)
+    monkeypatch.setattr(derived_module, "FlatMap", None)
+    assert all(np.isfinite(derived.object_line(skin, s)).all() for s in skin.sensors)  # nothing of it is made again
+    assert derived.distortion(skin.mesh, skin.pieces[0]).mean > 0
+    moved = replace(skin, sensors=(replace(skin.sensors[0], x=21.0), *skin.sensors[1:]))
+    assert derived.ready(moved, lambda: None), "a sensor that moves waits for nothing"
+
+
+def test_only_the_newest_document_is_waited_for(skin, later):
+    derived, asker = later
+    other = replace(skin, pieces=tuple(replace(p, UV=p.UV + 1.0) for p in skin.pieces))
+    told = []
+    derived.ready(skin, lambda: told.append("old"))
+    derived.ready(other, lambda: told.append("new"))
+    asker.answer()
+    assert told == ["new"] and derived.ready(other, lambda: None)
+
+
+def test_what_cannot_be_made_elsewhere_is_asked_for_where_it_is_seen(skin, later):
+    derived, asker = later
+    told = []
+    derived.ready(skin, lambda: told.append(derived.ready(skin, lambda: None)))
+    asker.answer("no room")
+    assert told == [True]
+
+
+def test_small_documents_and_those_without_a_thread_wait_for_nothing(skin):
+    asker = Later()
+    assert Derived(asker).ready(skin, lambda: None) and Derived().ready(skin, lambda: None) and asker.asked == {}

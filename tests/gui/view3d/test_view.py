@@ -291,3 +291,19 @@ def test_a_view_that_is_gone_is_told_nothing(window, skin):
     window.session.select(Target(piece="P1"))
     window.session.do("same", replace(skin))
     window.root.update()
+
+
+def test_a_document_that_is_being_prepared_leaves_the_picture_as_it_was(window, skin, monkeypatch):
+    view, session = window.view, window.session
+    view.settle()
+    before, waiting = view.painter, []
+    x, y = view.canvas.winfo_width() // 2, view.canvas.winfo_height() // 2
+    assert view.hit_at(x, y) is not None
+    monkeypatch.setattr(view._derived, "ready", lambda skin, then: not waiting.append(then) and len(waiting) > 1)
+    smaller = replace(skin, mesh=Mesh(skin.mesh.V * [1, 1, 0.5], skin.mesh.F))
+    session.do("half as high", smaller)
+    view.settle()
+    assert view._mesh is skin.object and view.hit_at(x, y) is None, "shown, but not what a click would mean"
+    waiting[0]()
+    view.settle()
+    assert view._mesh is smaller.object and view.painter is before
