@@ -5,7 +5,10 @@ from __future__ import annotations
 import tkinter as tk
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from tkinter import ttk
+
+from gui.flow import Flow
 
 #: Words of a key as Tk writes them, and as people read them.
 _KEY_WORDS = (("Control-", "Ctrl+"), ("Shift-", "Shift+"), ("Alt-", "Alt+"), ("Key-", ""), ("Return", "Enter"), ("space", "Space"))
@@ -16,6 +19,10 @@ _PRESSED_BY_SPACE = ("TButton", "TCheckbutton", "TRadiobutton", "Treeview", "But
 
 def always() -> bool:
     """Can be done at any time."""
+    return True
+
+
+def _settled(id: str) -> bool:
     return True
 
 
@@ -78,6 +85,8 @@ class Actions:
         Its keys are bound here.
     actions : sequence of Action
         In the order of the menus.
+    settle : callable, optional
+        Called with an action's id before it is done, to see to a text that is being typed; whether it may go on.
 
     Raises
     ------
@@ -85,8 +94,9 @@ class Actions:
         Two have the same id or key.
     """
 
-    def __init__(self, root: tk.Tk, actions: Sequence[Action]) -> None:
+    def __init__(self, root: tk.Tk, actions: Sequence[Action], *, settle: Callable[[str], bool] = _settled) -> None:
         self.all = tuple(actions)
+        self._settle = settle
         for what, words in (("id", [a.id for a in self.all]), ("key", [a.key for a in self.all if a.key])):
             twice = {word for word in words if words.count(word) > 1}
             if twice:
@@ -108,8 +118,10 @@ class Actions:
 
     def do(self, id: str) -> bool:
         """Do it if it can be done now; whether it was."""
-        action = self[id]
-        if not action.enabled():
+        return self._do(self[id])
+
+    def _do(self, action: Action) -> bool:
+        if not self._settle(action.id) or not action.enabled():
             return False
         action.run()
         return True
@@ -123,10 +135,10 @@ class Actions:
             for action in (a for a in self.all if a.menu == name):
                 accelerator = key_words(action.key)
                 if action.checked is None:
-                    menu.add_command(label=action.label, accelerator=accelerator, command=action.run)
+                    menu.add_command(label=action.label, accelerator=accelerator, command=partial(self._press, action))
                 else:
                     var = self._checks.setdefault(action.id, tk.BooleanVar(self._root))
-                    menu.add_checkbutton(label=action.label, accelerator=accelerator, command=action.run, variable=var)
+                    menu.add_checkbutton(label=action.label, accelerator=accelerator, command=partial(self._press, action), variable=var)
                 entries.append((menu.index("end") or 0, action))
                 self._insert_submenu(menu, f"{name}/{action.id}", submenus)
             menu.configure(postcommand=self.refresh)
@@ -135,26 +147,32 @@ class Actions:
         return bar
 
     def tool_bar(self, master: tk.Misc, show_tip: Callable[[str], None]) -> ttk.Frame:
-        """A slim row of buttons; `show_tip` is called with a sentence, or "" when the pointer leaves."""
-        bar = ttk.Frame(master, name="toolbar", padding=(6, 3))
+        """A slim row of buttons, two where the window is narrow; `show_tip` is called with a sentence, or "" when the pointer leaves."""
+        bar = Flow(master, margin=6, name="toolbar")
         before = ""
         for action in (a for a in self.all if a.tool):
             if before and action.menu != before:
-                ttk.Separator(bar, orient="vertical").pack(side="left", fill="y", padx=5, pady=3)
+                bar.add(ttk.Separator(bar, orient="vertical"), padx=5, divides=True)
             before = action.menu
             button: ttk.Button | ttk.Checkbutton
             var = None
             text = action.label.removesuffix(" …")
+            press = partial(self._press, action)
             if action.checked is None:
-                button = ttk.Button(bar, text=text, command=action.run, style="Tool.TButton", name=action.id, takefocus=True)
+                button = ttk.Button(bar, text=text, command=press, style="Tool.TButton", name=action.id, takefocus=True)
             else:
                 var = self._checks.setdefault(action.id, tk.BooleanVar(self._root))
-                button = ttk.Checkbutton(bar, text=text, command=action.run, style="Tool.Toolbutton", variable=var, name=action.id)
+                button = ttk.Checkbutton(bar, text=text, command=press, style="Tool.Toolbutton", variable=var, name=action.id)
             key = f" ({key_words(action.key)})" if action.key else ""
             _bind_tip(button, f"{action.tip or action.label}{key}", show_tip)
-            button.pack(side="left", padx=1)
+            bar.add(button)
             self._buttons.append((action, button, var))
         return bar
+
+    def _press(self, action: Action) -> None:
+        """By a menu or a button; what Tk has ticked by itself is put right where nothing came of it."""
+        if not self._do(action):
+            self.refresh()
 
     def refresh(self) -> None:
         """Grey out what cannot be done now, and tick what is on."""
@@ -189,10 +207,7 @@ class Actions:
             # Space presses the button that has the focus, and nothing else.
             if action.key == "Key-space" and event.widget.winfo_class() in _PRESSED_BY_SPACE:
                 return None
-            if not action.enabled():
-                return None
-            action.run()
-            return "break"
+            return "break" if self._do(action) else None
 
         return pressed
 

@@ -29,12 +29,14 @@ from gui.jobs.runner import Runner
 from gui.jobs.sweep import Sweep
 from gui.jobs.worker import Step, sentence_of
 from gui.live.tab import LiveTab
+from gui.panels.field import focused, select_all_by_key
 from gui.panels.new_sensor import NewSensorPanel
 from gui.panels.pieces import PiecesPanel
 from gui.panels.problems import ProblemsPanel
 from gui.panels.properties import PropertiesPanel
 from gui.panels.sensors import SensorsPanel
 from gui.panels.statusbar import StatusBar
+from gui.scale import px
 from gui.state.autosave import Autosave, left_over
 from gui.state.derived import Derived
 from gui.state.describe import describe
@@ -51,9 +53,9 @@ from gui.view2d.view import View2D
 from gui.view3d.view import View3D
 from skinfab.errors import InputError
 
-#: The size a window begins with, px: with its menu bar (30 px) and the frame of a window manager it fits the smallest screen it is made
-#: for, 1280 x 800; a larger one begins with the status bar below the screen.
-FIRST_SIZE = "1276x734"
+#: The size a window begins with, px at 96 dots an inch: with its menu bar (30 px) and the frame of a window manager it fits the smallest
+#: screen it is made for, 1280 x 800; a larger one begins with the status bar below the screen.
+FIRST_SIZE = (1276, 734)
 LEAST_SIZE = (960, 600)
 
 #: What buttons and menus may depend on.
@@ -82,10 +84,10 @@ class App:
         self.root = root
         self.sweep = Sweep(root)
         root.title("skinfab")
-        root.minsize(*LEAST_SIZE)
+        root.minsize(*_fitting(root, LEAST_SIZE))
         state = state_folder()
         remembered = recall(state)
-        root.geometry(on_screen(remembered.geometry, root.winfo_screenwidth(), root.winfo_screenheight()) or FIRST_SIZE)
+        root.geometry(on_screen(remembered.geometry, root.winfo_screenwidth(), root.winfo_screenheight()) or _first_size(root))
         self.theme = THEMES[remembered.theme]
         apply(root, self.theme)
         self.background = Background(root)
@@ -199,7 +201,7 @@ class App:
 
     def _side_panel(self, master: tk.Misc) -> ttk.Frame:
         session, complain = self.session, self.status.tip
-        side = ttk.Frame(master, name="side", width=int(_SIDE * self.root.winfo_fpixels("1i") / 96))
+        side = ttk.Frame(master, name="side", width=px(self.root, _SIDE))
         side.pack_propagate(False)
         PiecesPanel(side, session, self.derived).pack(fill="x")
         forms = ttk.Notebook(side, name="forms")
@@ -210,11 +212,28 @@ class App:
         forms.add(properties, text="Properties")
         forms.add(self.new_sensor, text="New sensor")
         forms.pack(side="bottom", fill="x")
+        self._fit_forms(forms)
         SensorsPanel(side, session, self.shelf).pack(fill="both", expand=True)  # last of all: where room is scarce, the list is scrolled
         # What is taken in hand or selected is what one wants to see.
         session.listen("tool", lambda: forms.select(self.new_sensor if session.tool == "add" else properties))
         session.listen("selection", lambda: forms.select(properties) if session.tool != "add" else None)
         return side
+
+    def _fit_forms(self, forms: ttk.Notebook) -> None:
+        """As high as the form that is shown, not as the highest: what is left is the list's."""
+
+        def fit() -> None:
+            shown = forms.select()
+            if shown:
+                forms.configure(height=forms.nametowidget(shown).winfo_reqheight())
+
+        def soon(event: tk.Event | None = None) -> None:
+            if not self._closed:
+                forms.after_idle(fit)
+
+        forms.bind("<<NotebookTabChanged>>", soon)
+        for topic in ("skin", "selection", "tool", "file"):
+            self.session.listen(topic, soon)  # type: ignore[arg-type]
 
     def _connect(self, remembered: Remembered) -> None:
         desk = self.desk
@@ -234,17 +253,26 @@ class App:
             *views.actions(),
             *HelpCommands(desk, lambda: self.actions.keys()).actions(),
         ]
-        self.actions = Actions(self.root, actions)
+        self.actions = Actions(self.root, actions, settle=self._settle)
+        select_all_by_key(self.root)
         for topic in TOPICS:
             self.session.listen(topic, self._changed)
         self.session.listen("file", self._name_window)
 
     # What happens
 
+    def _settle(self, action: str) -> bool:
+        """Before anything is done: a text that is being typed is taken, or, by undo, taken back."""
+        field = focused(self.root)
+        if action == "undo" and field is not None and field.pending:
+            field.revert()
+            return False
+        return self.desk.settle()
+
     def _begin(self, path: Path | None) -> None:
         """Offer what a crash has left, then open what was asked for."""
         for left in left_over(self.desk.state / "autosave"):
-            what = left.path.name if left.path is not None else "work that had no file yet"
+            what = left.path.name if left.path is not None else f"the skin of {left.object or 'an object'}, which had no file yet"
             when = time.strftime("%H:%M on %d %B", time.localtime(left.when))
             text = f"skinfab ended without saving {what}. There is a copy of it as it was at {when}."
             answer = self.desk.dialogs.ask("Unsaved work was kept", text, ("Open the copy", "Later", "Throw it away"), cancel="Later")
@@ -301,6 +329,7 @@ class App:
 
     def _cancel(self) -> None:
         self.seams.give_up()
+        self.session.report("busy", [])
         if self.runner.cancel():
             self.status.say("Stopped." + (" F6 flattens the pieces." if self.session.skin is not None else ""))
 
@@ -325,6 +354,17 @@ class App:
     def _log(self, trace: str) -> None:
         with contextlib.suppress(OSError), self._log_file.open("a", encoding="utf-8") as log:
             log.write(f"{time.strftime('%Y-%m-%d %H:%M:%S')}\n{trace}\n")
+
+
+def _fitting(root: tk.Tk, size: tuple[int, int]) -> tuple[int, int]:
+    """That size at the screen's own dots an inch, no larger than what the smallest screen would leave of this one."""
+    wide, high = FIRST_SIZE
+    most = root.winfo_screenwidth() * wide // 1280, root.winfo_screenheight() * high // 800
+    return min(px(root, size[0]), most[0]), min(px(root, size[1]), most[1])
+
+
+def _first_size(root: tk.Tk) -> str:
+    return "{}x{}".format(*_fitting(root, FIRST_SIZE))
 
 
 def run(path: Path | None = None) -> None:

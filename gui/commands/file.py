@@ -16,6 +16,7 @@ from gui.state.store import Remembered
 from skinfab.document import save_skin
 from skinfab.errors import SkinfabError
 from skinfab.material import DEFAULT_MATERIAL
+from skinfab.skin import Skin
 
 
 class FileCommands:
@@ -63,12 +64,13 @@ class FileCommands:
         """Open a mesh or a skin, once unsaved work is seen to."""
         if not self.may_leave():
             return
+        left = self._desk.session.skin
         if path.suffix.lower() == ".skin":
-            self._desk.work("opening", tasks.open_skin, lambda o: self._take(o, path), source="open", path=path)
+            self._desk.work("opening", tasks.open_skin, lambda o: self._take(o, path, left), source="open", path=path)
         else:
-            self._desk.work("looking at the mesh", tasks.look_at_mesh, lambda f: self._ask_about(f, path), source="open", path=path)
+            self._desk.work("looking at the mesh", tasks.look_at_mesh, lambda f: self._ask_about(f, path, left), source="open", path=path)
 
-    def _ask_about(self, facts: tasks.MeshFacts, path: Path) -> None:
+    def _ask_about(self, facts: tasks.MeshFacts, path: Path, left: Skin | None) -> None:
         choice = self._desk.dialogs.how_to_open(facts)
         if choice is None:
             return
@@ -77,7 +79,7 @@ class FileCommands:
         self._desk.work(
             "opening",
             tasks.open_mesh,
-            lambda o: self._take(o, path),
+            lambda o: self._take(o, path, left),
             source="open",
             path=path,
             units=choice.units,
@@ -87,7 +89,11 @@ class FileCommands:
             material=material,
         )
 
-    def _take(self, opened: tasks.Opened, path: Path) -> None:
+    def _take(self, opened: tasks.Opened, path: Path, left: Skin | None) -> None:
+        """Show it in place of the document that was given up for it, which may have been changed since."""
+        if self._desk.session.skin is not left and not self.may_leave():
+            self._desk.say(f"{path.name} was not opened.")
+            return
         is_document = path.suffix.lower() == ".skin"
         # A mesh that was only opened holds no work that could be lost.
         self._desk.session.open(opened.skin, path if is_document else None, saved=True)
@@ -122,6 +128,8 @@ class FileCommands:
     def may_leave(self) -> bool:
         """Ask about unsaved work where there is some; whether the document may be left."""
         session = self._desk.session
+        if not self._desk.settle():
+            return False
         if session.skin is None or not session.dirty:
             return True
         name = session.path.name if session.path is not None else session.skin.source.file

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tkinter as tk
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -16,12 +16,38 @@ from gui.jobs import tasks
 from gui.state.adopt import adopt
 from gui.state.problem import Problem
 from gui.state.selection import Target
+from gui.state.wording import in_window
 from skinfab.flatten.methods import METHODS
-from skinfab.seams.partial import Reopened
+from skinfab.placement.sensor import Sensor
+from skinfab.seams.partial import Fault, Reopened
 from skinfab.skin import Skin
 
 #: Seams that are known to fit their pieces; as many as there are steps to undo, and some.
 _MOST_SETTLED = 400
+
+
+@dataclass(frozen=True, eq=False)
+class _Settled:
+    """Seams whose pieces are known, and what there is to say of them.
+
+    Parameters
+    ----------
+    seams : (k, 2) int64
+    pieces : tuple of Problem
+    sensors : tuple of Sensor
+        Those that were left.
+    taken_off : tuple of Problem
+        About those that were not; said as long as nobody changes the sensors.
+    """
+
+    seams: NDArray[np.int64]
+    pieces: tuple[Problem, ...]
+    sensors: tuple[Sensor, ...]
+    taken_off: tuple[Problem, ...]
+
+    def said(self, skin: Skin) -> tuple[Problem, ...]:
+        """What holds of that document."""
+        return self.pieces + (self.taken_off if skin.sensors == self.sensors else ())
 
 
 class SeamCommands:
@@ -34,7 +60,7 @@ class SeamCommands:
 
     def __init__(self, desk: Desk) -> None:
         self._desk = desk
-        self._settled: list[tuple[NDArray[np.int64], list[Problem]]] = []
+        self._settled: list[_Settled] = []
         self._behind = False
         self.method = "auto"
         self.cones: int | None = None
@@ -53,7 +79,13 @@ class SeamCommands:
     def auto_cut(self) -> None:
         """Automatic seams in place of those that are not locked."""
         asked = self._desk.skin
-        self._desk.work("cutting and flattening", tasks.auto_cut, self._take(asked, "cut automatically"), source="flatten", skin=asked)
+        self._desk.work(
+            "cutting and flattening",
+            tasks.auto_cut,
+            self._take(asked, "cut automatically", over_sensors=True),
+            source="flatten",
+            skin=asked,
+        )
 
     def flatten_anew(self) -> None:
         """All pieces, by the method that is chosen."""
@@ -80,22 +112,29 @@ class SeamCommands:
         """Seams stay; what was said about where they may run goes."""
         self._desk.session.do("forget marks", replace(self._desk.skin, marks=None))
 
-    def make_thick(self, thickness: float) -> None:
-        """Flatten for a skin of that thickness, mm; 0 for the object's own surface."""
+    def make_thick(self, thickness: float, failed: Callable[[], None]) -> None:
+        """Flatten for a skin of that thickness, mm; 0 for the object's own surface. `failed` is called where nothing comes of it."""
         asked = self._desk.skin
         if thickness == asked.thickness:
             return
 
         def take(result: Reopened) -> None:
+            self._behind = False
             session = self._desk.session
             if session.skin is not asked:
-                self._desk.complain("flatten", "the skin changed while it was flattened for another thickness; set it again")
+                if session.skin is not None and session.skin.mesh is asked.mesh:
+                    self._desk.dropped("the skin was changed while it was flattened for another thickness, which is let go; set it again")
+                    self._follow()
+                failed()
                 return
             self._settle(result.skin, result)
             session.do(f"skin {thickness:g} mm thick", result.skin)
 
         label = f"flattening for {thickness:g} mm"
-        self._desk.work(label, tasks.make_thick, take, source="flatten", skin=asked, thickness=thickness, method=self.method)
+        if not self._desk.work(
+            label, tasks.make_thick, take, source="flatten", failed=failed, skin=asked, thickness=thickness, method=self.method
+        ):
+            failed()
 
     def _cones(self) -> int | None:
         return self.cones if self.method == "bff-cones" else None
@@ -121,6 +160,8 @@ class SeamCommands:
 
     def choose_method(self, method: str) -> None:
         """Flatten by another method from now on, and all pieces at once."""
+        if not self._desk.settle():
+            return
         self.method = method
         if self._desk.has_pieces():
             self.flatten_anew()
@@ -143,16 +184,20 @@ class SeamCommands:
         skin = self._desk.session.skin
         if skin is None:
             return
-        for seams, said in self._settled:
-            if skin.seams is seams:
-                self._desk.session.report("flatten", said)  # after undo, what was said then
+        for settled in self._settled:
+            if skin.seams is settled.seams:
+                self._desk.session.report("flatten", settled.said(skin))  # after undo, what was said then
+                self._behind = False
                 return
         asked = {"skin": skin, "method": self.method, "cones": self._cones(), "anew": []}
         self._behind = True
-        self._desk.work("flattening", tasks.reopen, self._take(skin, ""), source="flatten", failed=self.give_up, **asked)
+        self._desk.work("flattening", tasks.reopen, self._take(skin, ""), source="flatten", failed=self.give_up, own=True, **asked)
 
-    def _take(self, asked: Skin, label: str) -> Callable[[Reopened], None]:
-        """What to do with the result for `asked`: a step of that name, or what completes the last step."""
+    def _take(self, asked: Skin, label: str, *, over_sensors: bool = False) -> Callable[[Reopened], None]:
+        """What to do with the result for `asked`: a step of that name, or what completes the last step.
+
+        Where the document was changed meanwhile, only the seams can be taken, and only over a change of sensors.
+        """
 
         def take(result: Reopened) -> None:
             self._behind = False
@@ -161,11 +206,12 @@ class SeamCommands:
                 return  # something else was opened meanwhile
             skin = adopt(asked, result.skin)
             if session.skin is not asked:
-                # Changed meanwhile: what was found still says where to cut, the rest follows from that.
-                if label:
+                if over_sensors and session.redo_label is None and _asks_the_same(session.skin, asked):
                     session.do(label, replace(session.skin, seams=skin.seams))
-                else:
-                    self._follow()
+                    return
+                if label:
+                    self._desk.dropped(f"the skin was changed while the work went on, so its result ({label}) is let go; ask for it again")
+                self._follow()
                 return
             self._settle(skin, result)
             if label:
@@ -177,7 +223,20 @@ class SeamCommands:
 
     def _settle(self, skin: Skin, result: Reopened) -> None:
         """The pieces of `skin` are those of its seams, and this is what there is to say of them."""
-        said = [Problem(f.text, "flatten", kind="warning", target=Target(piece=f.piece)) for f in result.faults]
-        self._settled.append((skin.seams, said))
+        # Whether the sensors that are there fit is said by the check of all sensors, at every move.
+        lost = tuple(f"{sensor.id} was " for sensor in result.lost)
+        pieces = tuple(_warning(f) for f in result.faults if f.piece or len(f.faces))
+        taken_off = tuple(_warning(f) for f in result.faults if not f.piece and not len(f.faces) and f.text.startswith(lost))
+        settled = _Settled(skin.seams, pieces, skin.sensors, taken_off)
+        self._settled.append(settled)
         del self._settled[:-_MOST_SETTLED]
-        self._desk.session.report("flatten", said)
+        self._desk.session.report("flatten", settled.said(skin))
+
+
+def _warning(fault: Fault) -> Problem:
+    return Problem(in_window(fault.text), "flatten", kind="warning", target=Target(piece=fault.piece))
+
+
+def _asks_the_same(now: Skin, asked: Skin) -> bool:
+    """Whether an automatic cut of one is one of the other."""
+    return now.seams is asked.seams and now.marks is asked.marks and now.max_distortion == asked.max_distortion

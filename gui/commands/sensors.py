@@ -10,6 +10,7 @@ from gui.desk import Desk
 from gui.jobs import tasks
 from gui.state.adopt import adopt
 from gui.state.selection import NOTHING
+from skinfab.placement.sensor import Sensor
 from skinfab.skin import Skin
 
 _FILE_TIP = "Which sensors, and where, from a TOML file as skinfab place takes it (docs/sensors.md)."
@@ -20,6 +21,9 @@ class SensorCommands:
 
     def __init__(self, desk: Desk) -> None:
         self._desk = desk
+        #: The sensors that there is something to say of, and that.
+        self._said: tuple[tuple[Sensor, ...], tuple[str, ...]] = (), ()
+        desk.session.listen("skin", self._follow)
 
     def actions(self) -> list[Action]:
         """For the table."""
@@ -46,13 +50,24 @@ class SensorCommands:
         def take(result: tuple[Skin, tuple[str, ...]]) -> None:
             skin, warnings = result
             session = self._desk.session
-            if session.skin is None or session.skin.pieces != asked.pieces:
-                self._desk.complain("place", "the pieces changed while sensors were being placed; place them again")
+            if session.skin is None or session.skin.mesh is not asked.mesh:
+                return  # something else was opened meanwhile
+            if session.skin.pieces != asked.pieces or session.skin.seams is not asked.seams:
+                self._desk.dropped("the pieces changed while sensors were being placed, so none were; place them again")
                 return
-            session.do(label, replace(session.skin, sensors=adopt(asked, skin).sensors))
-            self._desk.note("place", warnings, kind="warning")
+            if session.skin is not asked and session.redo_label is not None:
+                self._desk.dropped("a step was undone while sensors were being placed, so none were; place them again")
+                return
+            sensors = adopt(asked, skin).sensors
+            self._said = sensors, warnings
+            session.do(label, replace(session.skin, sensors=sensors))
 
         self._desk.work("placing sensors", tasks.place_anew, take, source="place", skin=asked, file=file)
+
+    def _follow(self) -> None:
+        """What was said of sensors holds of these alone."""
+        skin, (sensors, warnings) = self._desk.session.skin, self._said
+        self._desk.note("place", warnings if skin is not None and sensors and skin.sensors is sensors else (), kind="warning")
 
     def clear(self) -> None:
         """Take all off."""

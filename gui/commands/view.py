@@ -42,7 +42,12 @@ class ViewCommands:
 
         def shading(k: int, name: str) -> Action:
             return Action(
-                f"shade_{name}", _LABELS[name], "View", lambda: session.shade(name), f"Control-Key-{k + 1}", checked=lambda: session.shading == name
+                f"shade_{name}",
+                _LABELS[name],
+                "View",
+                lambda: session.shade(name),
+                f"Control-Key-{k + 1}",
+                checked=lambda: session.shading == name,
             )
 
         return [

@@ -71,7 +71,7 @@ class _OpenMesh(tk.Toplevel):
         row = ttk.Frame(body, name="units")
         row.pack(anchor="w")
         for units, factor in MM_PER_UNIT.items():
-            text = f"{units}: {facts.extent * factor:.4g} mm long"
+            text = f"{units}: {_length(facts.extent * factor)} long"
             ttk.Radiobutton(row, text=text, value=units, variable=self._units, name=units).pack(side="left", padx=(0, 10))
 
     def _ask_wrap(self, body: ttk.Frame) -> None:
@@ -100,3 +100,15 @@ class _OpenMesh(tk.Toplevel):
                 return
         self.choice = MeshChoice(self._units.get(), self._repair.get(), wrap)
         self.destroy()
+
+
+def _length(mm: float) -> str:
+    """A length in the unit that people say it in.
+
+    Examples
+    --------
+    >>> _length(40.0), _length(90000.0), _length(0.0004), _length(12345.6)
+    ('40 mm', '90 m', '0.0004 mm', '12.35 m')
+    """
+    shown, unit = (mm / 1000, "m") if mm >= 10000 else (mm, "mm")
+    return f"{float(f'{shown:.4g}'):,.10g} {unit}".replace(",", " ")

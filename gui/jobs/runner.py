@@ -53,11 +53,14 @@ class Job:
         Called with the result.
     failed : callable
         Called with a sentence.
+    own : bool
+        Nobody asked for it: other work may take its place.
     """
 
     label: str
     done: Callable[[Any], None]
     failed: Callable[[str], None]
+    own: bool = False
 
 
 class Runner:
@@ -90,7 +93,14 @@ class Runner:
         return self._job
 
     def start(
-        self, label: str, function: Callable[..., Any], *, done: Callable[[Any], None], failed: Callable[[str], None], **arguments: Any
+        self,
+        label: str,
+        function: Callable[..., Any],
+        *,
+        done: Callable[[Any], None],
+        failed: Callable[[str], None],
+        own: bool = False,
+        **arguments: Any,
     ) -> None:
         """Have `function` done with `arguments` and ``progress``; what was going on is cancelled.
 
@@ -103,13 +113,15 @@ class Runner:
             Called with its result, in the window's loop.
         failed : callable
             Called with one sentence where it raised, or its process ended.
+        own : bool
+            Nobody asked for it.
         **arguments
             Values that can be pickled.
         """
         if self._closed:  # the window was closed under a question that led here
             return
         self.cancel()
-        self._job = Job(label, done, failed)
+        self._job = Job(label, done, failed, own)
         self._changed(Step(0.0, label))
         self._order = Order(function, arguments)
         self._send()

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from gcode.used import limits_of, used_by, with_room_for_nozzle
+from gui.state.wording import in_window
 from skinfab.document import load_skin
 from skinfab.material import load_material
 from skinfab.mesh.door import load_usable
@@ -21,7 +22,7 @@ from skinfab.mesh.wrap import WRAP_OFFSET, wrap
 from skinfab.placement.place import place_sensors
 from skinfab.progress import Progress, part_of
 from skinfab.seams import partial
-from skinfab.seams.partial import Reopened
+from skinfab.seams.partial import Fault, Reopened
 from skinfab.skin import Skin, Source
 
 
@@ -87,7 +88,7 @@ def look_at_mesh(*, path: Path, progress: Progress) -> MeshFacts:
         units=guess.units,
         unit_reason=guess.reason.split("; set --units")[0],
         unit_sure=guess.sure,
-        found=tuple(fault.sentence.replace("--repair", "repair") for fault in found.faults),
+        found=tuple(in_window(fault.sentence) for fault in found.faults),
         cleaning_does=tuple(does),
         repair_does=tuple(would_do),
         usable=after.usable,
@@ -144,11 +145,13 @@ def place_anew(*, skin: Skin, file: Path | None, progress: Progress) -> tuple[Sk
 def make_thick(*, skin: Skin, thickness: float, method: str, progress: Progress) -> Reopened:
     """The same seams for a skin of another thickness: the surface on which it keeps its lengths lies elsewhere."""
     progress(0.1, "moving the surface")
-    flattened = surface(skin.object, thickness=thickness, neutral=skin.neutral)
+    material = load_material(skin.material)
+    usual = thickness == material.depth  # what nobody had to ask for is rounded off where it folds, as by skinfab make
+    flattened = surface(skin.object, thickness=None if usual else thickness, neutral=skin.neutral, usual=material.depth)
     moved = replace(
         skin, mesh=flattened.mesh, thickness=flattened.thickness, object_V=None if flattened.mesh is skin.object else skin.object.V
     )
     ids = [piece.id for piece in skin.pieces]
-    return partial.reopen(
-        moved, limits_of(skin), method=method, anew=ids, material=load_material(skin.material), progress=part_of(progress, 0.3, 1.0)
-    )
+    made = partial.reopen(moved, limits_of(skin), method=method, anew=ids, material=material, progress=part_of(progress, 0.3, 1.0))
+    remarks = tuple(Fault(remark, np.arange(len(moved.mesh.F))) for remark in flattened.remarks)
+    return replace(made, faults=remarks + made.faults)

@@ -15,6 +15,7 @@ from gui.scale import px
 from gui.state.session import Session
 from skinfab.errors import InputError, SkinfabError
 from skinfab.material import load_material
+from skinfab.skin import Skin
 
 _OWN = "a file of your own …"
 
@@ -23,7 +24,12 @@ class DocumentForm(ttk.Frame):
     """What is selected when nothing is."""
 
     def __init__(
-        self, master: tk.Misc, session: Session, *, complain: Callable[[str], None], make_thick: Callable[[float], object]
+        self,
+        master: tk.Misc,
+        session: Session,
+        *,
+        complain: Callable[[str], None],
+        make_thick: Callable[[float, Callable[[], None]], object],
     ) -> None:
         super().__init__(master, name="document")
         self._session, self._complain, self._make_thick = session, complain, make_thick
@@ -49,9 +55,12 @@ class DocumentForm(ttk.Frame):
             tip="The skin closes without stretching where the surface in its middle is flattened; 0 flattens the object's own.",
         )
         self.thickness.grid(row=3, column=0, columnspan=2, sticky="ew", pady=2)
+        self._depth = 0.0
+        self.usual = ttk.Button(self, style="Tool.TButton", name="usual", command=lambda: self._thicken(self._depth))
+        self.usual.grid(row=4, column=0, columnspan=2, sticky="e")
         self.text = tk.StringVar(self)
         ttk.Label(self, textvariable=self.text, style="Faint.TLabel", wraplength=px(self, 290), justify="left").grid(
-            row=4, column=0, columnspan=2, sticky="w"
+            row=5, column=0, columnspan=2, sticky="w"
         )
 
     def refresh(self) -> None:
@@ -63,6 +72,7 @@ class DocumentForm(ttk.Frame):
         self.material.set(skin.material)
         self.bound.show(f"{skin.max_distortion:g}")
         self.thickness.show(f"{skin.thickness:g}")
+        self._offer(skin)
         low, high = skin.object.bbox
         size = " x ".join(f"{x:.1f}" for x in high - low)
         self.text.set(f"{size} mm, {len(skin.mesh.F)} triangles, read in {skin.source.units} x {skin.source.scale:g}")
@@ -96,7 +106,23 @@ class DocumentForm(ttk.Frame):
         value = number(text, "the thickness")
         if value < 0:
             raise InputError(f"the thickness is {value:g} mm; it must be 0 or more")
-        self._make_thick(value)
+        self._thicken(value)
+
+    def _thicken(self, value: float) -> None:
+        # Where nothing comes of it the field says what still is.
+        self._make_thick(value, self._refresh_soon)
+
+    def _refresh_soon(self) -> None:
+        self.after_idle(self.refresh)  # once the field has taken its text
+
+    def _offer(self, skin: Skin) -> None:
+        """The thickness that the material pours, with which what would fold is rounded off."""
+        try:
+            self._depth = load_material(skin.material).depth
+        except SkinfabError:  # the problems list says so
+            self._depth = 0.0
+        self.usual.configure(text=f"{self._depth:g} mm, as the material pours")
+        self.usual.state(["!disabled" if self._depth not in (0.0, skin.thickness) else "disabled"])
 
     def _set_bound(self, text: str) -> None:
         skin, value = self._session.skin, number(text, "the bound")

@@ -9,6 +9,9 @@ from tkinter import ttk
 
 from skinfab.errors import InputError, SkinfabError
 
+#: The bit of an event's state that says Shift is down.
+_SHIFT = 0x1
+
 
 class Field(ttk.Frame):
     """A label, an entry and a unit in a row.
@@ -50,8 +53,8 @@ class Field(ttk.Frame):
         self.entry.grid(row=0, column=1, padx=3)
         ttk.Label(self, text=unit, style="Faint.TLabel", width=3).grid(row=0, column=2, sticky="w")
         for key in ("<Return>", "<KP_Enter>", "<FocusOut>"):
-            self.entry.bind(key, self._commit)
-        self.entry.bind("<Escape>", self._revert)
+            self.entry.bind(key, lambda event: self.commit())
+        self.entry.bind("<Escape>", self._escaped)
         if tip:
             words.bind("<Enter>", lambda event: complain(tip))
             words.bind("<Leave>", lambda event: complain(""))
@@ -63,30 +66,64 @@ class Field(ttk.Frame):
         self._shown = text
         self._write(text)
 
-    def _commit(self, event: tk.Event) -> None:
+    @property
+    def pending(self) -> bool:
+        """Whether there is text in it that was not taken."""
+        return self.entry.get().strip() != self._shown
+
+    def commit(self) -> bool:
+        """Take the text; whether it could be taken."""
         text = self.entry.get().strip()
         if text == self._shown:
             self._write(self._shown)
-            return
+            return True
         try:
             self._take(text.replace(",", "."))
         except SkinfabError as fault:
             self.entry.state(["invalid"])
             self._complain(str(fault))
-            return
+            return False
         self._shown = text
         self.entry.state(["!invalid"])
         self._complain("")
+        return True
 
-    def _revert(self, event: tk.Event) -> str:
+    def revert(self) -> None:
+        """Show the value again that was taken last."""
         self._write(self._shown)
         self._complain("")
+
+    def _escaped(self, event: tk.Event) -> str:
+        self.revert()
         return "break"
 
     def _write(self, text: str) -> None:
         self.entry.state(["!invalid"])
         self.entry.delete(0, "end")
         self.entry.insert(0, text)
+
+
+def focused(widget: tk.Misc) -> Field | None:
+    """The field of the window of `widget` that is being typed in."""
+    focus = widget.focus_displayof()
+    return focus.master if focus is not None and isinstance(focus.master, Field) else None
+
+
+def select_all_by_key(root: tk.Misc) -> None:
+    """Ctrl+A selects the text of every entry there is and will be; by itself Tk goes to the line's beginning."""
+
+    def pressed(event: tk.Event) -> str | None:
+        if int(event.state) & _SHIFT:
+            return None  # another key
+        entry = event.widget
+        assert isinstance(entry, tk.Entry)  # those of ttk are such too
+        entry.selection_range(0, "end")
+        entry.icursor("end")
+        return "break"
+
+    for kind in ("TEntry", "Entry", "TSpinbox", "Spinbox"):
+        for key in ("<Control-a>", "<Control-A>"):  # the second with Caps Lock
+            root.bind_class(kind, key, pressed)
 
 
 def number(text: str, what: str) -> float:

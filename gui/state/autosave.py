@@ -31,11 +31,14 @@ class Left:
         What it is a newer state of; None where it was never saved.
     when : float
         Seconds since the epoch.
+    object : str
+        Name of the mesh's file; "" where it is not known.
     """
 
     file: Path
     path: Path | None
     when: float
+    object: str = ""
 
     def load(self) -> Skin:
         """The document.
@@ -122,7 +125,7 @@ class Autosave:
                 (skin, path), self._wanted, self._writing = self._wanted, None, True
             try:
                 save_skin(skin, self._file)
-                note = {"path": None if path is None else str(path), "when": time.time(), "pid": os.getpid()}
+                note = {"path": None if path is None else str(path), "when": time.time(), "pid": os.getpid(), "object": skin.source.file}
                 atomic_write(self._file.with_suffix(".json"), json.dumps(note) + "\n")
             except SkinfabError as fault:
                 self._failed(f"the copy of unsaved work could not be written: {fault}")
@@ -138,11 +141,12 @@ def left_over(folder: Path) -> list[Left]:
     for file in folder.glob("*.skin"):
         if _is_held(file.with_suffix(".lock")):
             continue
-        path, when = None, 0.0
+        path, when, object = None, 0.0, ""
         with contextlib.suppress(OSError, ValueError, KeyError, TypeError):  # the note is written after the copy
             note = json.loads(file.with_suffix(".json").read_text(encoding="utf-8"))
             path, when = (None if note["path"] is None else Path(note["path"])), float(note["when"])
-        found.append(Left(file, path, when or file.stat().st_mtime))
+            object = str(note["object"])
+        found.append(Left(file, path, when or file.stat().st_mtime, object))
     return sorted(found, key=lambda left: -left.when)
 
 

@@ -150,9 +150,11 @@ class Checker:
             if other.piece != piece.id or other.id == sensor.id:
                 continue
             need = self.material.gap + (sensor.pattern.bead + other.pattern.bead) / 2
-            lack = need - distance_within(curves, self._curves(other), need)
+            apart = distance_within(curves, self._curves(other), need)
+            lack = need - apart
             if lack > CLEARANCE_MM:
-                found.append(_too_close(sensor, lack, other.id))
+                on_top = apart < (sensor.pattern.bead + other.pattern.bead) / 2 - CLEARANCE_MM
+                found.append(_overlap(sensor, lack, other.id) if on_top else _too_close(sensor, lack, other.id))
         return found
 
     def _containment(self, ground: _Ground, sensor: Sensor, curves: Curves) -> Iterable[Finding]:
@@ -259,6 +261,11 @@ class _Ground:
 def _too_close(sensor: Sensor, lack: float, other: str) -> Finding:
     brief = f"{_mm(lack)} mm too close to {other}"
     return Finding(f"{sensor.id} is {brief}", lack, sensor.id, "" if other == "itself" else other, brief)
+
+
+def _overlap(sensor: Sensor, lack: float, other: str) -> Finding:
+    """Their beads run into each other: how much too close they are would say nothing of how far to move them."""
+    return Finding(f"{sensor.id} overlaps {other}", lack, sensor.id, other, f"overlaps {other}")
 
 
 def own_clearance(sensor: Sensor, *, need: float) -> float:

@@ -277,7 +277,7 @@ def crashed(start):
 def test_what_a_crash_has_left_is_offered_and_opened_as_unsaved(start, crashed):
     person = start(MESHES / "dodecahedron.obj", Unsaved_work_was_kept="Open the copy")
     person.wait(lambda: person.skin is not None and person.app.runner.job is None)
-    assert "work that had no file yet" in person.answers.asked[0]
+    assert "the skin of cube.obj, which had no file yet" in person.answers.asked[0]
     assert person.skin.seed == 42 and person.session.dirty and person.session.path is None
     assert person.app.autosave.settle() and not list(crashed.glob("999999999-*"))
     assert len(list(crashed.glob("*.skin"))) == 1, "what is still unsaved is still kept"

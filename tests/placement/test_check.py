@@ -184,4 +184,4 @@ def test_findings_name_the_other_and_have_few_words(sheet: Callable) -> None:
     _, piece = sheet(60, 60)
     one, two = put(10, 30), put(22, 30, id="C2")
     (found,) = find_faults(piece, two, (one,), material=MATERIAL)
-    assert found.other == "C1" and found.text == f"C2 is {found.brief}" and found.brief.endswith("mm too close to C1")
+    assert found.other == "C1" and found.text == "C2 overlaps C1" and found.brief == "overlaps C1"

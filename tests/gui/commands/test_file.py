@@ -171,3 +171,74 @@ def test_a_file_opened_over_a_running_job_leaves_the_pieces_in_step(cube, tmp_pa
     cube.app.files.open_path(tmp_path / "a.obj")
     cube.wait(lambda: len(cube.skin.pieces) == 1 and cube.app.runner.job is None)
     assert "a.obj" in cube.problems()[0]
+
+
+def test_what_was_changed_while_a_file_was_being_opened_is_asked_about(cube):
+    """Nothing was unsaved when it was asked for: so nothing was asked."""
+    cube.answers.give["Unsaved work"] = "Cancel"
+    cube.app.files.open_path(MESHES / "dodecahedron.obj")
+    change(cube, 9)
+    cube.wait()
+    assert [a.split(":")[0] for a in cube.answers.asked] == ["how_to_open dodecahedron.obj", "Unsaved work"]
+    assert cube.skin.source.file == "cube.obj" and cube.skin.seed == 9 and "was not opened" in cube.app.status.text.get()
+    cube.answers.give["Unsaved work"] = "Do not save"
+    cube.open(MESHES / "dodecahedron.obj")
+    assert cube.skin.source.file == "dodecahedron.obj"
+
+
+def typed(cube, text):
+    """In the field for the bound on mean d, with the focus still there."""
+    entry = cube.app.root.nametowidget("body.middle.side.forms.properties.document.bound.entry")
+    entry.focus_force()
+    cube.app.root.update()
+    entry.delete(0, "end")
+    entry.insert(0, text)
+    return entry
+
+
+def test_a_number_that_is_still_being_typed_is_saved(cube, tmp_path):
+    cube.answers.path = tmp_path / "work.skin"
+    typed(cube, "4.2")
+    cube.press("Control-s")
+    assert load_skin(tmp_path / "work.skin").max_distortion == 4.2 and not cube.session.dirty
+    typed(cube, "4.3")
+    cube.app.actions.do("save")  # as by a button or a menu, which take no focus
+    assert load_skin(tmp_path / "work.skin").max_distortion == 4.3 and not cube.session.dirty
+
+
+def test_a_number_that_cannot_be_taken_stops_what_is_done_after_it(cube, tmp_path):
+    cube.answers.path = tmp_path / "work.skin"
+    entry = typed(cube, "3")
+    for act in (lambda: cube.press("Control-s"), lambda: cube.press("F5"), cube.app.close):
+        act()
+        assert "must be above 4" in cube.app.status.text.get() and entry.get() == "3"
+    assert not (tmp_path / "work.skin").exists() and cube.app.runner.job is None and not cube.app._closed
+    cube.press("Escape")
+    cube.press("Control-s")
+    assert (tmp_path / "work.skin").exists()
+
+
+def test_undo_takes_back_the_text_first(cube):
+    change(cube, 11)
+    shown = f"{cube.skin.max_distortion:g}"
+    entry = typed(cube, "4.4")
+    cube.press("Control-z")
+    assert entry.get() == shown and cube.skin.seed == 11 and cube.session.undo_label == "another seed"
+    cube.press("Control-z")
+    assert cube.skin.seed != 11
+
+
+def test_a_thickness_that_is_typed_is_flattened_before_it_is_saved(cube, tmp_path):
+    cube.answers.path = tmp_path / "work.skin"
+    cube.press("F5")
+    cube.wait()
+    entry = cube.app.root.nametowidget("body.middle.side.forms.properties.document.thickness.entry")
+    entry.focus_force()
+    cube.app.root.update()
+    entry.delete(0, "end")
+    entry.insert(0, "1")
+    assert not cube.app.actions.do("save")
+    assert not (tmp_path / "work.skin").exists() and "flattening for 1 mm was begun" in cube.problems()[0]
+    cube.wait()
+    cube.press("Control-s")
+    assert load_skin(tmp_path / "work.skin").thickness == 1.0

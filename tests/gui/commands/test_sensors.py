@@ -6,6 +6,8 @@ import pytest
 from person import MESHES
 
 from gui.state.selection import Target
+from skinfab.patterns.registry import make_pattern
+from skinfab.placement.sensor import Sensor
 
 
 @pytest.fixture
@@ -38,7 +40,7 @@ def test_pieces_changed_meanwhile_are_said(cup):
     cup.session.do("fewer", replace(keep, pieces=keep.pieces[:-1]))
     assert cup.app.runner.job is not None
     cup.wait()
-    assert cup.skin.sensors == () and any("the pieces changed" in text for text in cup.problems())
+    assert cup.skin.sensors == () and any("the pieces changed" in text for text in cup.problems("warning"))
     cup.press("Control-z")
 
 
@@ -47,3 +49,28 @@ def test_without_pieces_there_is_nowhere_to_place(person):
     assert not person.app.actions.do("auto_place")
     person.press("F7")
     assert person.app.runner.job is None
+
+
+def test_an_undo_while_sensors_are_placed_is_not_overrun(cup):
+    cup.session.do("another seed", replace(cup.skin, seed=77))
+    cup.app.actions.do("auto_place")
+    cup.app.actions.do("undo")
+    cup.wait()
+    assert cup.session.redo_label == "another seed" and cup.skin.sensors == ()
+    assert any("a step was undone" in text for text in cup.problems("warning"))
+
+
+def test_what_is_said_of_placed_sensors_goes_and_comes_with_them(cup, monkeypatch):
+    spiral = make_pattern("contact-spiral", {"s": 20})
+    one = (Sensor("C1", cup.skin.pieces[0].id, spiral, *cup.skin.pieces[0].UV.mean(axis=0), 0.0, 0),)
+    placed = replace(cup.skin, sensors=one), ("piece P9 has no sensor",)
+    monkeypatch.setattr(cup.app.runner, "start", lambda label, function, *, done, **rest: done(placed))
+    cup.app.actions.do("auto_place")
+    cup.wait()
+    assert cup.problems("warning") == ["piece P9 has no sensor"]
+    cup.app.actions.do("undo")
+    assert cup.problems("warning") == []
+    cup.press("Control-y")
+    assert cup.problems("warning") == ["piece P9 has no sensor"]
+    cup.app.actions.do("clear")
+    assert cup.problems("warning") == []

@@ -77,3 +77,8 @@ def test_a_long_list_is_cut_short_in_words(root, facts):
     many = replace(facts, found=tuple(f"fault number {k}" for k in range(40)))
     _, said = asked(root, many, lambda w: w.destroy())
     assert "fault number 7" in said and "fault number 8" not in said and "and 32 more" in said
+
+
+def test_lengths_are_said_as_people_say_them(root, facts):
+    _, said = asked(root, replace(facts, extent=90.0), lambda w: w.destroy())
+    assert "mm: 90 mm long" in said and " m: 90 m long" in said and "e+" not in said

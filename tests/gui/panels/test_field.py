@@ -1,8 +1,10 @@
 """A field takes good values, keeps bad ones in sight and says why."""
 
+import tkinter as tk
+
 import pytest
 
-from gui.panels.field import Field, number
+from gui.panels.field import Field, focused, number, select_all_by_key
 from skinfab.errors import InputError
 
 
@@ -56,3 +58,25 @@ def test_a_new_value_does_not_overwrite_what_is_being_typed(root, field):
 def test_only_finite_numbers_are_numbers(text):
     with pytest.raises(InputError, match="must be a number"):
         number(text, "y")
+
+
+def test_ctrl_a_selects_all_of_any_entry(root, field):
+    select_all_by_key(root)
+    plain = tk.Entry(root)
+    plain.insert(0, "old one")
+    plain.pack()
+    for entry in (field.entry, plain):
+        entry.focus_force()
+        root.update()
+        entry.event_generate("<Control-a>")
+        assert entry.selection_get() == entry.get()
+
+
+def test_what_has_the_focus_is_found_and_taken(root, field):
+    assert focused(root) is field and not field.pending
+    field.entry.insert("end", "1")
+    assert field.pending and field.commit() and field.taken == [51.0] and not field.pending
+    field.entry.insert("end", "x")
+    assert not field.commit() and field.pending
+    field.revert()
+    assert field.entry.get() == "51"

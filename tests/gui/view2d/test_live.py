@@ -18,7 +18,7 @@ def test_two_too_close_are_said_once_and_an_edge_besides(skin):
     live.look(crowded)
     texts = [p.text for p in live.problems(crowded)]
     assert set(live.findings) == {"C1", "C2", "C3"} and len(texts) == 2
-    assert "too close to C2" in texts[0] and "outside piece P2" in texts[1]
+    assert "C1 overlaps C2" in texts[0] and "outside piece P2" in texts[1]
     assert words(live.findings["C3"])[0].endswith("outside P2")
 
 

@@ -142,7 +142,7 @@ def test_two_sensors_too_close_are_one_problem_that_names_both(window):
     goal = at(window, "P2", 30.0, 38.0)
     window.pointer.drag((x, y), (goal[0] - x, goal[1] - y))
     (problem,) = window.session.problems
-    assert "too close to" in problem.text and "C1" in problem.text and "C2" in problem.text
+    assert "overlaps" in problem.text and "C1" in problem.text and "C2" in problem.text
 
 
 def test_the_handle_turns_about_the_middle_in_steps(window):
