@@ -30,13 +30,14 @@ from gui.jobs.sweep import Sweep
 from gui.jobs.worker import Step, sentence_of
 from gui.live.tab import LiveTab
 from gui.panels.field import focused, select_all_by_key
+from gui.panels.forms import Forms
 from gui.panels.new_sensor import NewSensorPanel
 from gui.panels.pieces import PiecesPanel
 from gui.panels.problems import ProblemsPanel
 from gui.panels.properties import PropertiesPanel
 from gui.panels.sensors import SensorsPanel
 from gui.panels.statusbar import StatusBar
-from gui.scale import px
+from gui.scale import fitting, px
 from gui.state.autosave import Autosave, left_over
 from gui.state.derived import Derived
 from gui.state.describe import describe
@@ -84,10 +85,13 @@ class App:
         self.root = root
         self.sweep = Sweep(root)
         root.title("skinfab")
-        root.minsize(*_fitting(root, LEAST_SIZE))
+        root.minsize(*fitting(root, LEAST_SIZE))
         state = state_folder()
         remembered = recall(state)
-        root.geometry(on_screen(remembered.geometry, root.winfo_screenwidth(), root.winfo_screenheight()) or _first_size(root))
+        root.geometry(
+            on_screen(remembered.geometry, root.winfo_screenwidth(), root.winfo_screenheight())
+            or "{}x{}".format(*fitting(root, FIRST_SIZE))
+        )
         self.theme = THEMES[remembered.theme]
         apply(root, self.theme)
         self.background = Background(root)
@@ -204,7 +208,7 @@ class App:
         side = ttk.Frame(master, name="side", width=px(self.root, _SIDE))
         side.pack_propagate(False)
         PiecesPanel(side, session, self.derived).pack(fill="x")
-        forms = ttk.Notebook(side, name="forms")
+        forms = Forms(side, session)
         properties = PropertiesPanel(
             forms, session, self.derived, self.shelf, self.background, complain=complain, make_thick=self.seams.make_thick
         )
@@ -212,28 +216,11 @@ class App:
         forms.add(properties, text="Properties")
         forms.add(self.new_sensor, text="New sensor")
         forms.pack(side="bottom", fill="x")
-        self._fit_forms(forms)
         SensorsPanel(side, session, self.shelf).pack(fill="both", expand=True)  # last of all: where room is scarce, the list is scrolled
         # What is taken in hand or selected is what one wants to see.
         session.listen("tool", lambda: forms.select(self.new_sensor if session.tool == "add" else properties))
         session.listen("selection", lambda: forms.select(properties) if session.tool != "add" else None)
         return side
-
-    def _fit_forms(self, forms: ttk.Notebook) -> None:
-        """As high as the form that is shown, not as the highest: what is left is the list's."""
-
-        def fit() -> None:
-            shown = forms.select()
-            if shown:
-                forms.configure(height=forms.nametowidget(shown).winfo_reqheight())
-
-        def soon(event: tk.Event | None = None) -> None:
-            if not self._closed:
-                forms.after_idle(fit)
-
-        forms.bind("<<NotebookTabChanged>>", soon)
-        for topic in ("skin", "selection", "tool", "file"):
-            self.session.listen(topic, soon)  # type: ignore[arg-type]
 
     def _connect(self, remembered: Remembered) -> None:
         desk = self.desk
@@ -354,17 +341,6 @@ class App:
     def _log(self, trace: str) -> None:
         with contextlib.suppress(OSError), self._log_file.open("a", encoding="utf-8") as log:
             log.write(f"{time.strftime('%Y-%m-%d %H:%M:%S')}\n{trace}\n")
-
-
-def _fitting(root: tk.Tk, size: tuple[int, int]) -> tuple[int, int]:
-    """That size at the screen's own dots an inch, no larger than what the smallest screen would leave of this one."""
-    wide, high = FIRST_SIZE
-    most = root.winfo_screenwidth() * wide // 1280, root.winfo_screenheight() * high // 800
-    return min(px(root, size[0]), most[0]), min(px(root, size[1]), most[1])
-
-
-def _first_size(root: tk.Tk) -> str:
-    return "{}x{}".format(*_fitting(root, FIRST_SIZE))
 
 
 def run(path: Path | None = None) -> None:

@@ -6,6 +6,8 @@ import tkinter as tk
 from dataclasses import dataclass
 from tkinter import font, ttk
 
+from gui.scale import px
+
 
 @dataclass(frozen=True)
 class Theme:
@@ -132,20 +134,23 @@ def apply(root: tk.Misc, theme: Theme) -> None:
     for name in ("Toolbutton", "Tool.Toolbutton"):
         style.map(name, background=chosen, foreground=words)
     for name in ("TCheckbutton", "TRadiobutton"):
-        style.configure(name, upperbordercolor=theme.faint, lowerbordercolor=theme.faint)
+        style.configure(name, upperbordercolor=theme.faint, lowerbordercolor=theme.faint, indicatorsize=px(root, 10))
         # The style's own map is stronger than what is configured, and white in any theme.
         style.map(name, background=[("active", theme.window)], indicatorbackground=[("selected", theme.accent), ("!selected", theme.field)])
         style.map(name, indicatorforeground=[("selected", theme.on_accent), ("!selected", theme.text)])
     for name in ("TEntry", "TSpinbox", "TCombobox"):
-        style.configure(name, fieldbackground=theme.field, foreground=theme.text, padding=2)
+        style.configure(name, fieldbackground=theme.field, foreground=theme.text, padding=2, arrowsize=px(root, 12))
         style.map(name, fieldbackground=[("readonly", theme.field)], foreground=[("disabled", theme.faint), ("invalid", theme.error)])
     style.configure("Treeview", background=theme.field, fieldbackground=theme.field, foreground=theme.text, rowheight=_row_height(root))
     style.configure("Treeview.Heading", background=theme.window, relief="flat", padding=(4, 2))
     style.map("Treeview", background=[("selected", theme.accent)], foreground=[("selected", theme.on_accent)])
     style.configure("TNotebook", background=theme.window, borderwidth=0)
     style.configure("TNotebook.Tab", background=theme.window, padding=(10, 3))
-    style.map("TNotebook.Tab", background=[("selected", theme.panel)])
-    style.configure("TScrollbar", background=theme.panel, troughcolor=theme.window, bordercolor=theme.border)
+    style.map("TNotebook.Tab", background=[("selected", theme.panel)], **{side: [] for side in ("lightcolor", "bordercolor")})
+    style.configure("TNotebook.Tab", lightcolor=theme.border, bordercolor=theme.border)
+    style.configure("TSeparator", background=theme.border)
+    style.configure("Sash", sashthickness=px(root, 6))
+    style.configure("TScrollbar", background=theme.panel, troughcolor=theme.window, bordercolor=theme.border, arrowsize=px(root, 13))
     style.map("TScrollbar", background=[("disabled", theme.window), ("active", theme.border)], arrowcolor=[("disabled", theme.faint)])
     style.configure("TProgressbar", background=theme.accent)
     style.configure("TPanedwindow", background=theme.window)

@@ -9,6 +9,7 @@ from tkinter import ttk
 import numpy as np
 
 from gui.panels.field import Field, number
+from gui.scale import px
 from gui.state.profiles import ProfileShelf
 from gui.state.session import Session
 from gui.theme import Theme
@@ -19,7 +20,7 @@ from skinfab.patterns.registry import make_pattern
 from skinfab.placement.sensor import Sensor
 from skinfab.tolerances import PREVIEW_CHORD_MM
 
-#: Height of the picture, px.
+#: Height of the picture, px of an ordinary screen.
 _PICTURE = 84
 
 
@@ -61,7 +62,7 @@ class NewSensorPanel(ttk.Frame):
         box.pack(side="left", fill="x", expand=True, padx=4)
         box.bind("<<ComboboxSelected>>", lambda event: self._show())
         ttk.Button(row, text="Place", command=place, style="Tool.TButton", name="place").pack(side="right")
-        self.picture = tk.Canvas(self, height=_PICTURE, highlightthickness=1, name="picture")
+        self.picture = tk.Canvas(self, height=px(self, _PICTURE), highlightthickness=1, name="picture")
         self.picture.pack(fill="x", pady=3)
         self.picture.bind("<Configure>", lambda event: self._draw())
         self._fields = ttk.Frame(self, name="fields")
@@ -137,7 +138,7 @@ class NewSensorPanel(ttk.Frame):
         """The stroke as it is printed, as large as it fits."""
         canvas = self.picture
         canvas.delete("all")
-        width, height = canvas.winfo_width(), _PICTURE
+        width, height = canvas.winfo_width(), px(self, _PICTURE)
         try:
             pattern = self.pattern()
         except SkinfabError as fault:

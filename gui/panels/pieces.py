@@ -5,7 +5,7 @@ from __future__ import annotations
 import tkinter as tk
 from tkinter import ttk
 
-from gui.scale import px
+from gui.scale import measured, px
 from gui.state.derived import Derived
 from gui.state.selection import NOTHING, Target
 from gui.state.session import Session
@@ -28,9 +28,8 @@ class PiecesPanel(ttk.Frame):
         self.list = ttk.Treeview(rows, columns=[c[0] for c in _COLUMNS], show="headings", height=2, selectmode="browse", name="list")
         for name, heading, width in _COLUMNS:
             self.list.heading(name, text=heading)
-            self.list.column(
-                name, width=px(self, width), minwidth=px(self, width), anchor="w" if name == "id" else "e", stretch=name == "size"
-            )
+            least = max(px(self, width), measured(self, heading))
+            self.list.column(name, width=least, minwidth=least, anchor="w" if name == "id" else "e", stretch=name == "size")
         bar = ttk.Scrollbar(rows, command=self.list.yview)
         self.list.configure(yscrollcommand=bar.set)
         bar.pack(side="right", fill="y")

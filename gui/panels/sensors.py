@@ -5,7 +5,7 @@ from __future__ import annotations
 import tkinter as tk
 from tkinter import ttk
 
-from gui.scale import px
+from gui.scale import measured, px
 from gui.state.profiles import ProfileShelf
 from gui.state.selection import Target
 from gui.state.session import Session
@@ -26,13 +26,8 @@ class SensorsPanel(ttk.Frame):
         self.list = ttk.Treeview(rows, columns=[c[0] for c in _COLUMNS], show="headings", height=5, selectmode="browse", name="list")
         for name, heading, width in _COLUMNS:
             self.list.heading(name, text=heading)
-            self.list.column(
-                name,
-                width=px(self, width),
-                minwidth=px(self, width),
-                anchor="e" if name in ("channel", "r") else "w",
-                stretch=name == "kind",
-            )
+            least = max(px(self, width), measured(self, heading))
+            self.list.column(name, width=least, minwidth=least, anchor="e" if name in ("channel", "r") else "w", stretch=name == "kind")
         bar = ttk.Scrollbar(rows, command=self.list.yview)
         self.list.configure(yscrollcommand=bar.set)
         bar.pack(side="right", fill="y")

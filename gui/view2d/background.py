@@ -172,7 +172,7 @@ def _rulers(ground: Ground, pen: Pen) -> None:
             centre[axis] = at
             # Numbers beside the left ruler stand above their marks: it is narrower than they are long.
             anchor = (0.5, 0.5) if axis == 0 else (0.5, 0.0)
-            pen.text(centre, f"{number + 0.0:.{digits}f}", theme.faint, size=9, anchor=anchor)
+            pen.text(centre, f"{number + 0.0:.{digits}f}", theme.faint, size=9, anchor=anchor, inside=True)
         pen.lines(marks, theme.faint, 1.0)
     pen.box((0, 0, wide, wide), theme.panel)
     pen.text((wide / 2, wide / 2), "mm", theme.faint, size=9)

@@ -1,9 +1,11 @@
 """The lists of pieces and sensors follow the document and the selection, both ways."""
 
 from dataclasses import replace
+from tkinter import font, ttk
 
 import pytest
 
+from gui.panels.forms import Forms
 from gui.panels.pieces import PiecesPanel
 from gui.panels.sensors import SensorsPanel
 from gui.state.derived import Derived
@@ -65,3 +67,25 @@ def test_a_missing_profile_hides_the_resistance_only(session, sensors):
 
 def test_nothing_is_open(root):
     assert PiecesPanel(root, Session(), Derived()).summary.get() == "Nothing is open."
+
+
+def test_every_heading_has_room_for_its_words(root, pieces, sensors):
+    heading = font.nametofont("TkHeadingFont", root=root)
+    for panel in (pieces, sensors):
+        for column in panel.list["columns"]:
+            assert panel.list.column(column, "minwidth") >= heading.measure(panel.list.heading(column, "text")) + 8
+
+
+def test_forms_are_as_high_as_the_one_that_is_shown(root, session):
+    forms = Forms(root, session)
+    low, high = ttk.Frame(forms, height=60, width=50), ttk.Frame(forms, height=300, width=50)
+    forms.add(low, text="low")
+    forms.add(high, text="high")
+    forms.pack()
+    heights = []
+    for shown in (low, high, low):
+        forms.select(shown)
+        root.after(50, lambda: root.setvar("shown", "1"))
+        root.wait_variable("shown")
+        heights.append(forms.winfo_height())
+    assert heights[0] == heights[2] == heights[1] - 240
