@@ -10,6 +10,7 @@ from multiprocessing.connection import Connection
 from multiprocessing.context import SpawnProcess
 from typing import Any, Protocol
 
+from gui.jobs.parcel import receive, send, shared
 from gui.jobs.worker import Order, Outcome, Ready, Step, serve
 
 #: How often the window looks, ms.
@@ -84,6 +85,7 @@ class Runner:
         self._retired: list[tuple[SpawnProcess, float]] = []
         self._helper = _start()
         self._spare: _Helper | None = None
+        self._known: list[object] = []  # what was sent and may come back as it is
         self._order: Order | None = None  # waits until the process listens: sending much to one that does not would stop the window
         self._timer = clock.after(POLL_MS, self._poll)
 
@@ -157,7 +159,8 @@ class Runner:
             return
         order, self._order = self._order, None
         try:
-            self._helper.channel.send(order)
+            send(self._helper.channel, order)
+            self._known = shared(order.arguments)
         except (BrokenPipeError, ConnectionResetError):  # it died while idle
             self._order = order
             self._replace()
@@ -180,7 +183,7 @@ class Runner:
         helper = self._helper
         try:
             while not self._closed and helper is self._helper and helper.channel.poll():
-                self._hear(helper.channel.recv())
+                self._hear(receive(helper.channel, self._known))
         except (EOFError, ConnectionResetError):
             self._mourn()
 
@@ -189,7 +192,7 @@ class Runner:
         spare = self._spare
         try:
             if spare is not None and spare.channel.poll():
-                spare.channel.recv()
+                receive(spare.channel)
                 spare.ready = True
         except (EOFError, ConnectionResetError):  # it died: another will be made
             self._spare = None

@@ -13,6 +13,7 @@ from multiprocessing.connection import Connection
 from types import FrameType
 from typing import Any
 
+from gui.jobs.parcel import receive, send, shared
 from skinfab.errors import SkinfabError
 
 #: Progress is told at most this often, s: more than a screen shows is only traffic.
@@ -65,13 +66,14 @@ def serve(channel: Connection) -> None:
     signal.signal(signal.SIGTERM, _end)
     try:
         _import_what_takes_long()
-        channel.send(Ready())
+        send(channel, Ready())
         while True:
-            order = channel.recv()
+            order = receive(channel)
+            known = shared(order.arguments)
             signal.signal(signal.SIGTERM, _interrupt)  # cancelled: unwind, so that half-written files go
             outcome = _obey(order, channel)
             signal.signal(signal.SIGTERM, _end)
-            channel.send(outcome)
+            send(channel, outcome, known)
     except (EOFError, BrokenPipeError, ConnectionResetError, KeyboardInterrupt):
         return  # the window was closed, or wants this work no more
 
@@ -114,7 +116,7 @@ def _obey(order: Order, channel: Connection) -> Outcome:
         now = time.monotonic()
         if now - told >= TELL_EVERY_S:
             told = now
-            channel.send(Step(fraction, label))
+            send(channel, Step(fraction, label))
 
     return outcome_of(lambda: order.function(**order.arguments, progress=progress))
 
