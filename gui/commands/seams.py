@@ -112,8 +112,8 @@ class SeamCommands:
         """Seams stay; what was said about where they may run goes."""
         self._desk.session.do("forget marks", replace(self._desk.skin, marks=None))
 
-    def make_thick(self, thickness: float, failed: Callable[[], None]) -> None:
-        """Flatten for a skin of that thickness, mm; 0 for the object's own surface. `failed` is called where nothing comes of it."""
+    def make_thick(self, thickness: float) -> None:
+        """Flatten for a skin of that thickness, mm; 0 for the object's own surface."""
         asked = self._desk.skin
         if thickness == asked.thickness:
             return
@@ -125,16 +125,12 @@ class SeamCommands:
                 if session.skin is not None and session.skin.mesh is asked.mesh:
                     self._desk.dropped("the skin was changed while it was flattened for another thickness, which is let go; set it again")
                     self._follow()
-                failed()
                 return
             self._settle(result.skin, result)
             session.do(f"skin {thickness:g} mm thick", result.skin)
 
         label = f"flattening for {thickness:g} mm"
-        if not self._desk.work(
-            label, tasks.make_thick, take, source="flatten", failed=failed, skin=asked, thickness=thickness, method=self.method
-        ):
-            failed()
+        self._desk.work(label, tasks.make_thick, take, source="flatten", skin=asked, thickness=thickness, method=self.method)
 
     def _cones(self) -> int | None:
         return self.cones if self.method == "bff-cones" else None

@@ -29,7 +29,7 @@ class DocumentForm(ttk.Frame):
         session: Session,
         *,
         complain: Callable[[str], None],
-        make_thick: Callable[[float, Callable[[], None]], object],
+        make_thick: Callable[[float], object],
     ) -> None:
         super().__init__(master, name="document")
         self._session, self._complain, self._make_thick = session, complain, make_thick
@@ -109,11 +109,9 @@ class DocumentForm(ttk.Frame):
         self._thicken(value)
 
     def _thicken(self, value: float) -> None:
-        # Where nothing comes of it the field says what still is.
-        self._make_thick(value, self._refresh_soon)
-
-    def _refresh_soon(self) -> None:
-        self.after_idle(self.refresh)  # once the field has taken its text
+        self._make_thick(value)
+        # Until it lies flat, and where nothing comes of it, the field says what still is.
+        self.after_idle(self.refresh)
 
     def _offer(self, skin: Skin) -> None:
         """The thickness that the material pours, with which what would fold is rounded off."""

@@ -30,7 +30,7 @@ class PropertiesPanel(ttk.Frame):
     complain : callable
         Shows a sentence about what was typed, or a hint.
     make_thick : callable
-        Flattens for a skin of so many mm; what it is given besides is called where nothing comes of it.
+        Flattens for a skin of so many mm.
     """
 
     def __init__(
@@ -42,7 +42,7 @@ class PropertiesPanel(ttk.Frame):
         background: Background,
         *,
         complain: Callable[[str], None],
-        make_thick: Callable[[float, Callable[[], None]], object],
+        make_thick: Callable[[float], object],
     ) -> None:
         super().__init__(master, name="properties", padding=4)
         self._session = session

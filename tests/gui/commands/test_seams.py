@@ -199,6 +199,11 @@ def test_a_thickness_that_folds_is_said_in_the_windows_words_and_the_materials_o
     form.thickness.commit()
     person.wait()
     assert entry.get() == "0", "the field says what still is"
+    entry.insert(0, "0.5")  # 0.50
+    form.thickness.commit()
+    person.app.root.nametowidget("statusbar.work.cancel").invoke()
+    person.wait()
+    assert entry.get() == "0" and person.skin.thickness == 0
     (text,) = [p for p in person.problems() if "mm thick" in p]
     assert text.startswith("a skin 1 mm thick: ") and "give 0.96 mm or less" in text and "--" not in text and "skinfab make" not in text
     assert form.usual.cget("text") == "2.5 mm, as the material pours"

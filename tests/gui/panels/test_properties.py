@@ -16,9 +16,7 @@ from gui.state.selection import NOTHING, Target
 def panel(root, session):
     background, said = Background(root), []
     thick = []
-    made = PropertiesPanel(
-        root, session, Derived(), ProfileShelf(), background, complain=said.append, make_thick=lambda mm, failed: thick.append(mm)
-    )
+    made = PropertiesPanel(root, session, Derived(), ProfileShelf(), background, complain=said.append, make_thick=thick.append)
     made.thick = thick
     made.pack()
     made.said = said
