@@ -146,7 +146,7 @@ def apply(root: tk.Misc, theme: Theme) -> None:
     style.map("Treeview", background=[("selected", theme.accent)], foreground=[("selected", theme.on_accent)])
     style.configure("TNotebook", background=theme.window, borderwidth=0)
     style.configure("TNotebook.Tab", background=theme.window, padding=(10, 3))
-    style.map("TNotebook.Tab", background=[("selected", theme.panel)], **{side: [] for side in ("lightcolor", "bordercolor")})
+    style.map("TNotebook.Tab", background=[("selected", theme.panel)], lightcolor=[], bordercolor=[])
     style.configure("TNotebook.Tab", lightcolor=theme.border, bordercolor=theme.border)
     style.configure("TSeparator", background=theme.border)
     style.configure("Sash", sashthickness=px(root, 6))

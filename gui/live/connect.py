@@ -57,6 +57,20 @@ class ConnectRow(ttk.Frame):
             row.pack_forget()
         self._rows[self.kind.get()].pack(side="left", fill="x", expand=True, padx=4)
 
+    def tell(self, choice: Choice) -> None:
+        """Say in the fields what was chosen, wherever that was."""
+        if isinstance(choice, PortChoice):
+            self.kind.set("Port")
+            self.port.set(choice.port)
+            self.baud.set(str(choice.baud))
+        elif isinstance(choice, LogChoice):
+            self.kind.set("Log")
+            self.log.set(str(choice.path))
+        else:
+            self.kind.set("Simulator")
+            self.simulator.set(choice.kind)
+        self.show()
+
     def connected(self, connected: bool) -> None:
         """What the button does from now on."""
         self._connected = connected

@@ -144,6 +144,7 @@ class LiveTab(ttk.Frame):
             self.status.configure(text="", style="TLabel")
             self._blank()
             return
+        self.connect.tell(choice)
         self.feed = Feed(choice, contact=self._contact_channels, after=before, log=self._log)
         self.plots.clear("")
         self._said_at = 0.0

@@ -41,7 +41,7 @@ def words_of(name: str, status: Status, *, standing: str = "", pace: str = "", c
     contacts : str
         What keeps contacts from being seen; empty where nothing does.
     opening : str
-        What is being done while it is opened.
+        What is being done while it is opened, where that is no device.
 
     Examples
     --------
@@ -61,6 +61,8 @@ def words_of(name: str, status: Status, *, standing: str = "", pace: str = "", c
     if not math.isnan(status.gone_s):
         gone = f"{name} is gone for {status.gone_s:.0f} s: plug it in again, it is found by itself; all lights are off"
         return Words("; ".join([gone, *parts[1:]]), "error")
+    if math.isinf(status.age_s) and opening:
+        return Words(f"{name}: waiting for its first frame", "warning")  # what is simulated or read is not there at once
     if silent(status, paused=bool(standing)):
         since = "no frame has come yet" if math.isinf(status.age_s) else f"stale: no frame for {status.age_s:.1f} s"
         return Words("; ".join([f"{name}, {since}; look at the device", *parts[1:]]), "error")

@@ -73,8 +73,10 @@ def paint_lines(ground: Ground, pen: Pen) -> None:
         _grid(ground, pen)
     sheet, plane, theme = ground.sheet, ground.plane, ground.theme
     edges = sheet.edges
-    holes = plane.to_px(edges.ends[edges.side < 0])
-    pen.lines(list(holes), theme.text, 1.2)
+    # Inside a piece there are holes of the object, and cuts that reach no border.
+    inner, cut = edges.side < 0, ~sheet.mesh.topology.is_boundary[edges.mesh]
+    pen.lines(list(plane.to_px(edges.ends[inner & ~cut])), theme.text, 1.2)
+    pen.lines(list(plane.to_px(edges.ends[inner & cut])), theme.seam, 1.8)
     sides = [plane.to_px(side.points + sheet.offset[side.piece]) for side in sheet.sides]
     pen.lines([px for px, side in zip(sides, sheet.sides, strict=True) if side.kind == "border"], theme.text, 1.4)
     pen.lines([px for px, side in zip(sides, sheet.sides, strict=True) if side.kind != "border"], theme.seam, 1.8)

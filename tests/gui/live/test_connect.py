@@ -59,3 +59,9 @@ def test_what_is_missing_is_said(row, kind, baud, says):
     row.port.set("" if "port" in says else "/dev/x")
     press(row)
     assert row.told["connect"] == [] and says in row.told["complain"][0]
+
+
+@pytest.mark.parametrize("choice", [PortChoice("/dev/ttyACM7", 9600), LogChoice(Path("/tmp/b.csv")), SimulatorChoice("robot finger")])
+def test_what_was_chosen_elsewhere_is_in_the_fields(row, choice):
+    row.tell(choice)
+    assert row.choice() == choice

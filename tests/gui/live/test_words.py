@@ -60,3 +60,9 @@ def test_a_log_says_its_pace_and_not_a_rate():
     assert words_of("log", status(), pace="5 times its own pace").text == "skin: 2 channels, 5 times its own pace"
     assert words_of("log", status(), pace="5 times its own pace", standing="paused").text.endswith("paused")
     assert words_of("log", Status("opening"), opening="opening log").text == "opening log"
+
+
+def test_what_is_simulated_or_read_is_no_device_to_look_at_before_its_first_frame():
+    words = words_of("simulated hand", status(age_s=math.inf), opening="opening simulated hand")
+    assert words.kind == "warning" and "waiting for its first frame" in words.text and "device" not in words.text
+    assert words_of("port", status(age_s=math.inf)).kind == "error"
