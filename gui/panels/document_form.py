@@ -56,8 +56,8 @@ class DocumentForm(ttk.Frame):
         )
         self.thickness.grid(row=3, column=0, columnspan=2, sticky="ew", pady=2)
         self._depth = 0.0
-        self.usual = ttk.Button(self, style="Tool.TButton", name="usual", command=lambda: self._thicken(self._depth))
-        self.usual.grid(row=4, column=0, columnspan=2, sticky="e")
+        self.usual = ttk.Button(self, name="usual", command=lambda: self._thicken(self._depth))
+        self.usual.grid(row=4, column=0, columnspan=2, sticky="e", pady=2)
         self.text = tk.StringVar(self)
         ttk.Label(self, textvariable=self.text, style="Faint.TLabel", wraplength=px(self, 290), justify="left").grid(
             row=5, column=0, columnspan=2, sticky="w"
@@ -119,7 +119,7 @@ class DocumentForm(ttk.Frame):
             self._depth = load_material(skin.material).depth
         except SkinfabError:  # the problems list says so
             self._depth = 0.0
-        self.usual.configure(text=f"{self._depth:g} mm, as the material pours")
+        self.usual.configure(text=f"Take {self._depth:g} mm, as the material pours")
         self.usual.state(["!disabled" if self._depth not in (0.0, skin.thickness) else "disabled"])
 
     def _set_bound(self, text: str) -> None:

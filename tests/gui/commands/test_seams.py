@@ -206,7 +206,7 @@ def test_a_thickness_that_folds_is_said_in_the_windows_words_and_the_materials_o
     assert entry.get() == "0" and person.skin.thickness == 0
     (text,) = [p for p in person.problems() if "mm thick" in p]
     assert text.startswith("a skin 1 mm thick: ") and "give 0.96 mm or less" in text and "--" not in text and "skinfab make" not in text
-    assert form.usual.cget("text") == "2.5 mm, as the material pours"
+    assert form.usual.cget("text") == "Take 2.5 mm, as the material pours"
     form.usual.invoke()
     person.wait()
     assert person.skin.thickness == 2.5 and person.problems() == [] and any("rounded off" in text for text in person.problems("warning"))
