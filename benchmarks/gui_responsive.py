@@ -22,7 +22,8 @@ import numpy as np
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "tests"))
 
-from outside import FLAT, OBJECT, Screen, Window, missing, until  # noqa: E402
+from outside import FLAT, OBJECT, Window  # noqa: E402
+from screen import Screen, missing, until  # noqa: E402
 
 CANCEL = ".statusbar.work.cancel"
 COLUMNS = ("what", "events", "median_ms", "p95_ms", "max_ms", "target_ms")

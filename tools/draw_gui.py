@@ -18,7 +18,8 @@ from PIL import Image
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "tests"))
 
-from outside import FLAT, OBJECT, Screen, Window, missing, until  # noqa: E402
+from outside import FLAT, OBJECT, Window  # noqa: E402
+from screen import Screen, missing, until  # noqa: E402
 
 from gui.view3d.camera import Camera  # noqa: E402
 from skinfab.mesh.door import load_usable  # noqa: E402

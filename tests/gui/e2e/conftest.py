@@ -7,7 +7,8 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
-from outside import Screen, Window, missing
+from outside import Window
+from screen import Screen, missing
 
 
 @pytest.fixture(scope="module")

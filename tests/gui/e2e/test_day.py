@@ -8,8 +8,9 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
-from outside import FLAT, OBJECT, Screen, Window, until
+from outside import FLAT, OBJECT, Window
 from PIL import Image
+from screen import Screen, until
 
 from gui.theme import LIGHT
 from skinfab.document import load_skin

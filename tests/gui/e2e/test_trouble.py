@@ -8,7 +8,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
-from outside import OBJECT, Screen, Window, until
+from outside import OBJECT, Window
+from screen import Screen, until
 
 from skinfab.document import load_skin
 
