@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tkinter as tk
-from tkinter import ttk
+from tkinter import font, ttk
 
 from gui.scale import px
 from gui.state.selection import NOTHING
@@ -12,6 +12,9 @@ from gui.theme import Theme
 
 #: Lines shown at once; the rest is scrolled to.
 _ROWS = 3
+
+#: Width of the first column, what a list leaves free beside its text, and the least that lines are made for, px at 96 dots an inch.
+_KIND, _BESIDE, _LEAST = 70, 6, 100
 
 _MARKS = {"error": "error", "warning": "warning", "note": "note"}
 
@@ -27,13 +30,15 @@ class ProblemsPanel(ttk.Frame):
         rows = ttk.Frame(self)
         rows.pack(fill="both", expand=True)
         self.list = ttk.Treeview(rows, columns=("kind", "text"), show="", height=_ROWS, selectmode="browse", name="list")
-        self.list.column("kind", width=px(self, 70), stretch=False)
+        self.list.column("kind", width=px(self, _KIND), stretch=False)
         self.list.column("text", width=px(self, 600))
         bar = ttk.Scrollbar(rows, command=self.list.yview)
         self.list.configure(yscrollcommand=bar.set)
         bar.pack(side="right", fill="y")
         self.list.pack(side="left", fill="both", expand=True)
         self.list.bind("<<TreeviewSelect>>", self._show)
+        self._wide, self._font = 0, font.nametofont(str(ttk.Style(self).lookup("Treeview", "font")) or "TkDefaultFont", root=self)
+        self.list.bind("<Configure>", self._resized)
         self.restyle(theme)
         session.listen("problems", self._refresh)
         self._refresh()
@@ -47,14 +52,37 @@ class ProblemsPanel(ttk.Frame):
         self.list.delete(*self.list.get_children())
         problems = self._session.problems
         for k, problem in enumerate(problems):
-            self.list.insert("", "end", iid=str(k), values=(_MARKS[problem.kind], problem.text), tags=(problem.kind,))
+            # A sentence ends with what to do: it must not be cut off.
+            for j, line in enumerate(self._lines(problem.text)):
+                mark = "" if j else _MARKS[problem.kind]
+                self.list.insert("", "end", iid=f"{k}.{j}" if j else str(k), values=(mark, line), tags=(problem.kind,))
         counts = {kind: sum(p.kind == kind for p in problems) for kind in _MARKS}
         said = ", ".join(f"{n} {kind}{'s' if n > 1 else ''}" for kind, n in counts.items() if n)
         self.title.set(f"Problems: {said}" if said else "No problems")
 
+    def _lines(self, text: str) -> list[str]:
+        """A sentence in lines that fit."""
+        room = self._wide - px(self, _KIND + 2 * _BESIDE)
+        if room < px(self, _LEAST):
+            return [text]  # not shown yet
+        lines: list[str] = []
+        for word in text.split(" "):
+            longer = f"{lines[-1]} {word}" if lines else word
+            if lines and self._font.measure(longer) <= room:
+                lines[-1] = longer
+            else:
+                lines.append(word)
+        return lines
+
+    def _resized(self, event: tk.Event) -> None:
+        if event.width != self._wide:
+            self._wide = event.width
+            self._refresh()
+
     def _show(self, event: tk.Event) -> None:
         chosen = self.list.selection()
-        if chosen and int(chosen[0]) < len(self._session.problems):
-            target = self._session.problems[int(chosen[0])].target
+        place = int(chosen[0].partition(".")[0]) if chosen else -1
+        if 0 <= place < len(self._session.problems):
+            target = self._session.problems[place].target
             if target != NOTHING:
                 self._session.select(target)

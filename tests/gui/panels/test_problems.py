@@ -34,3 +34,20 @@ def test_it_can_change_its_colours(root, session):
     panel = ProblemsPanel(root, session, LIGHT)
     panel.restyle(DARK)
     assert str(panel.list.tag_configure("error", "foreground")) == DARK.error
+
+
+def test_a_long_sentence_is_read_to_its_end(root, session):
+    panel = ProblemsPanel(root, session, LIGHT)
+    panel.pack(fill="x")
+    root.update()
+    text = " ".join(f"word{k}" for k in range(60)) + "; give 0.96 mm or less"
+    session.report("flatten", [Problem(text, "flatten", target=Target(piece="P1"))])
+    rows = panel.list.get_children()
+    assert len(rows) >= 3 and " ".join(panel.list.item(row, "values")[1] for row in rows) == text
+    assert [panel.list.item(row, "values")[0] for row in rows] == ["error"] + [""] * (len(rows) - 1)
+    panel.list.selection_set(rows[-1])
+    root.update()
+    assert session.selected == Target(piece="P1")
+    root.geometry("700x400")
+    root.update()
+    assert len(panel.list.get_children()) > len(rows)
