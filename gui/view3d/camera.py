@@ -79,7 +79,7 @@ class Camera:
         """Pixels per mm."""
         return _FILL * min(self.width, self.height) / (2 * self.radius) * self.zoom
 
-    def projection(self, sharper: int = 1) -> tuple[FloatArray, FloatArray]:
+    def projection(self, sharper: float = 1) -> tuple[FloatArray, FloatArray]:
         """Rows (3, 3) and shift (3,) that give column, row and depth (mm); with `sharper` times as many pixels either way."""
         s = self.scale
         rows = self.turn * np.array([[s], [-s], [-1.0]])

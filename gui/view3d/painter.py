@@ -56,7 +56,7 @@ class Painter:
 
     def __init__(self) -> None:
         self.camera: Camera | None = None
-        self.sharper = 1
+        self.sharper = self.coarser = 1
         self.face: Int32 = np.full((1, 1), -1, dtype=np.int32)
         self.depth: Float32 = np.full((1, 1), np.inf, dtype=np.float32)
         self.slack = 0.0
@@ -67,11 +67,25 @@ class Painter:
         self.strokes = Strokes.joined([])
         self._resize(1, 1, 1)
 
-    def draw(self, solid: Solid, camera: Camera, paint: Paint, strokes: Strokes, *, sharper: int = 1, spots: Spots | None = None) -> Bytes:
-        """A picture (height, width, 3); with `sharper` 2, smooth edges for four times the pixels. It is overwritten by the next."""
-        wanted: tuple[object, ...] = (solid, camera, sharper)
+    def draw(
+        self,
+        solid: Solid,
+        camera: Camera,
+        paint: Paint,
+        strokes: Strokes,
+        *,
+        sharper: int = 1,
+        coarser: int = 1,
+        spots: Spots | None = None,
+    ) -> Bytes:
+        """A picture (height, width, 3), overwritten by the next.
+
+        With `sharper` 2 it has smooth edges for four times the pixels; with `coarser` 2 it has half as many rows and columns, rounded
+        up, and is meant to be enlarged. What is asked of it later is in the camera's pixels all the same.
+        """
+        wanted: tuple[object, ...] = (solid, camera, sharper, coarser)
         if not _same(wanted, self._drawn):
-            self._triangles(solid, camera, sharper)
+            self._triangles(solid, camera, sharper, coarser)
             self._drawn, self._shaded = wanted, ()
         if not _same((paint, spots), self._shaded):
             self._colours(solid, camera, paint, spots)
@@ -79,12 +93,13 @@ class Painter:
         self.strokes = strokes
         np.copyto(self._image, self._base)
         a, b = self._placed(strokes.a), self._placed(strokes.b)
-        stroke(a, b, strokes.item, strokes.width, self.depth, self.slack, sharper, self._cover, self._owner)
+        stroke(a, b, strokes.item, strokes.width / np.float32(coarser), self.depth, self.slack, sharper, self._cover, self._owner)
         lay_over(self._cover, self._owner, strokes.colour, self._image)
         return self._image
 
     def face_at(self, column: int, row: int) -> int:
         """Face of the document's mesh at a pixel of the picture; -1 where there is none."""
+        column, row = column // self.coarser, row // self.coarser
         if self._solid is None or not (0 <= row < self._image.shape[0] and 0 <= column < self._image.shape[1]):
             return -1
         t = int(self.face[row * self.sharper, column * self.sharper])
@@ -95,18 +110,22 @@ class Painter:
         if self._solid is None:
             none = np.empty(0, dtype=np.int32)
             return none, none, none
+        step = max(step // self.coarser, 1)
         few = self.face[:: step * self.sharper, :: step * self.sharper]
+        step_px = step * self.coarser
         rows, columns = np.nonzero(few >= 0)
-        return (columns * step).astype(np.int32), (rows * step).astype(np.int32), self._solid.name[few[rows, columns]]
+        return (columns * step_px).astype(np.int32), (rows * step_px).astype(np.int32), self._solid.name[few[rows, columns]]
 
     def depth_at(self, column: int, row: int) -> float:
         """Depth of the surface at a pixel, mm; infinite where there is none."""
+        column, row = column // self.coarser, row // self.coarser
         if not (0 <= row < self._image.shape[0] and 0 <= column < self._image.shape[1]):
             return float("inf")
         return float(self.depth[row * self.sharper, column * self.sharper])
 
     def item_near(self, column: int, row: int, *, reach: int) -> int:
         """The strokes' item nearest to a pixel among those that stand for something and come within `reach` pixels; -1 where none is."""
+        column, row, reach = column // self.coarser, row // self.coarser, max(reach // self.coarser, 1)
         low_row, low_column = max(row - reach, 0), max(column - reach, 0)
         near = self._owner[low_row : row + reach + 1, low_column : column + reach + 1]
         rows, columns = np.nonzero(near >= 0)
@@ -119,12 +138,15 @@ class Painter:
 
     def is_seen(self, screen: NDArray[np.float64]) -> NDArray[np.bool_]:
         """Which points (k, 3) of the screen (column, row, depth) are in the picture and not hidden, (k,)."""
-        found: NDArray[np.bool_] = seen_of(screen.astype(np.float32).reshape(-1, 3), self.depth, self.slack, self.sharper)
+        at: Float32 = screen.astype(np.float32).reshape(-1, 3)
+        at[:, :2] /= self.coarser
+        found: NDArray[np.bool_] = seen_of(at, self.depth, self.slack, self.sharper)
         return found
 
-    def _triangles(self, solid: Solid, camera: Camera, sharper: int) -> None:
-        self._resize(camera.width, camera.height, sharper)
-        rows, shift = camera.projection(sharper)
+    def _triangles(self, solid: Solid, camera: Camera, sharper: int, coarser: int) -> None:
+        self._resize(-(-camera.width // coarser), -(-camera.height // coarser), sharper)
+        self.coarser = coarser
+        rows, shift = camera.projection(sharper / coarser)
         if len(self._screen) != len(solid.V):
             self._screen = np.empty_like(solid.V)
         project(solid.V, rows.astype(np.float32), shift.astype(np.float32), self._screen)
@@ -145,13 +167,13 @@ class Painter:
             how = solid.F, solid.normal, light, solid.name
             shade(self.face, self._screen, *how, *look, paint.background, flat, self.sharper, box, self._base)
         if spots is not None and len(spots.points):
-            at = camera.to_screen(spots.points).astype(np.float32)
+            at = self._placed(spots.points.astype(np.float32))
             sizes = spots.radius.astype(np.float32), spots.colour.astype(np.float32)
-            shine(self.depth, at, camera.scale, *sizes, self.sharper, self._base)
+            shine(self.depth, at, camera.scale / self.coarser, *sizes, self.sharper, self._base)
 
     def _box(self, solid: Solid, camera: Camera) -> tuple[int, int, int, int]:
         """Rows and columns of the picture that the object may touch."""
-        at = camera.to_screen(solid.corners)[:, :2]
+        at = camera.to_screen(solid.corners)[:, :2] / self.coarser
         height, width = self._base.shape[:2]
         low, high = np.floor(at.min(axis=0)) - 1, np.ceil(at.max(axis=0)) + 2
         (left, right), (top, bottom) = (np.clip([low[k], high[k]], 0, n).astype(int).tolist() for k, n in ((0, width), (1, height)))
@@ -159,7 +181,7 @@ class Painter:
 
     def _placed(self, points: Float32) -> Float32:
         assert self.camera is not None
-        rows, shift = self.camera.projection()
+        rows, shift = self.camera.projection(1 / self.coarser)
         screen = np.empty_like(points)
         project(points, rows.astype(np.float32), shift.astype(np.float32), screen)
         return screen

@@ -24,6 +24,7 @@ from gui.view3d.gestures import Gestures
 from gui.view3d.hit import Hit, hit
 from gui.view3d.labels import piece_labels, seam_labels, sensor_label
 from gui.view3d.painter import Painter, warm
+from gui.view3d.patch import differing
 from gui.view3d.scene import Scene
 from gui.view3d.solid import Solid
 from skinfab.mesh.model import Mesh
@@ -37,6 +38,9 @@ _SLOW = 0.030
 
 #: Samples of the best picture at most: four a pixel up to 1600 x 1000, one where the screen is finer than the eye.
 _SAMPLES = 6_400_000
+
+#: Pixels from which a moving object is drawn at half the width and height: the way to the screen alone takes too long for more.
+_COARSE = 1_600_000
 
 #: How near the pointer must come to a line, pixels at 96 dots per inch.
 _REACH = 5
@@ -95,6 +99,9 @@ class View3D(ttk.Frame):
         self.canvas = tk.Canvas(self, name="canvas", highlightthickness=1, borderwidth=0, takefocus=True, width=400, height=300)
         self.canvas.pack(fill="both", expand=True)
         self._photo: ImageTk.PhotoImage | None = None
+        self._small: ImageTk.PhotoImage | None = None
+        self._large: tk.PhotoImage | None = None
+        self._enlarged = np.zeros((0, 0, 3), dtype=np.uint8)
         self._picture = self.canvas.create_image(0, 0, anchor="nw", tags=("picture",))
         self._furniture = Furniture(self.canvas, dpi=self.dpi)
         self._mesh: Mesh | None = None
@@ -251,23 +258,42 @@ class View3D(ttk.Frame):
         rough = self._detail.rough if self._detail is not None else None
         solid = rough if self._moving and self._slow and rough is not None else self._solid
         fine = not self._moving and 4 * camera.width * camera.height <= _SAMPLES
+        coarse = self._moving and camera.width * camera.height > _COARSE
         start = time.perf_counter()
-        image = self.painter.draw(solid, camera, paint, strokes, sharper=2 if fine else 1, spots=spots)
+        image = self.painter.draw(solid, camera, paint, strokes, sharper=2 if fine else 1, coarser=2 if coarse else 1, spots=spots)
         if self._moving and solid is self._solid:
             self._slow = time.perf_counter() - start > _SLOW
         return image
 
     def _paste(self, image: np.ndarray[Any, np.dtype[np.uint8]]) -> None:
+        if self.painter.coarser > 1:
+            self._enlarge(image, self.painter.coarser)
+            return
         height, width = image.shape[:2]
         if self._photo is None or (self._photo.width(), self._photo.height()) != (width, height):
             self._photo = ImageTk.PhotoImage("RGB", (width, height), master=self.canvas)
-            self.canvas.itemconfigure(self._picture, image=self._photo)
         self._photo.paste(Image.fromarray(image))
-        self.canvas.itemconfigure(self._picture, state="normal")
+        self.canvas.itemconfigure(self._picture, image=self._photo, state="normal")
+
+    def _enlarge(self, image: np.ndarray[Any, np.dtype[np.uint8]], times: int) -> None:
+        """Show a coarse picture, each pixel as several."""
+        height, width = image.shape[:2]
+        if self._small is None or (self._small.width(), self._small.height()) != (width, height):
+            self._small = ImageTk.PhotoImage("RGB", (width, height), master=self.canvas)
+            self._large = tk.PhotoImage(width=times * width, height=times * height, master=self.canvas)
+            self._enlarged = np.zeros((0, 0, 3), dtype=np.uint8)
+        self._small.paste(Image.fromarray(image))
+        # Most of what it takes is the way to the screen: only what differs goes there.
+        low, high = differing(self._enlarged, image)
+        place = "-from", low[1], low[0], high[1], high[0], "-to", times * low[1], times * low[0]
+        if high > low:
+            self.canvas.tk.call(self._large, "copy", str(self._small), *place, "-zoom", times, "-compositingrule", "set")
+        self._enlarged = image.copy()
+        self.canvas.itemconfigure(self._picture, image=self._large, state="normal")
 
     def _label(self, skin: Skin) -> None:
         camera, painter, scene = self.camera, self.painter, self.scene
-        labelled = (skin, camera, painter.sharper, self.theme.name, self.session.shading)
+        labelled = (skin, camera, painter.sharper, painter.coarser, self.theme.name, self.session.shading)
         if labelled == self._labelled:
             return  # only what lights up has changed
         self._labelled = labelled

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 from shapes import sphere
 
+from gui.state.selection import Target
 from gui.view3d import painter as module
 from gui.view3d.camera import Camera
 from gui.view3d.lines import Strokes
@@ -86,3 +87,25 @@ def test_nothing_can_be_drawn():
 def test_warming_up_compiles_everything():
     warm()
     assert all(len(getattr(module, name).signatures) for name in ("rasterise", "project", "shade", "shade_quickly", "stroke", "shine"))
+
+
+def test_a_coarse_picture_answers_in_the_pixels_of_the_camera():
+    solid, camera, paint = scene()
+    camera, V = camera.sized(401, 301), solid.V.astype(float)
+    strokes = Strokes.polyline(V[:40], (255, 0, 0), 3.0, Target(seam=4))
+    fine, coarse = Painter(), Painter()
+    whole, half = fine.draw(solid, camera, paint, strokes), coarse.draw(solid, camera, paint, strokes, coarser=2)
+    assert whole.shape == (301, 401, 3) and half.shape == (151, 201, 3)
+    rows, columns = np.mgrid[2:300:7, 2:400:7]
+    places = list(zip(columns.ravel().tolist(), rows.ravel().tolist(), strict=True))
+    there = [[painter.face_at(*at) >= 0 for at in places] for painter in (fine, coarse)]
+    assert np.mean(np.equal(*there)) > 0.97
+    apart = [abs(fine.depth_at(*at) - coarse.depth_at(*at)) for at, a, b in zip(places, *there, strict=True) if a and b]
+    assert np.median(apart) < 0.05 * camera.radius
+    seen = camera.to_screen(V)
+    assert np.mean(fine.is_seen(seen) == coarse.is_seen(seen)) > 0.9
+    for painter in (fine, coarse):
+        c, r, f = painter.faces(8)
+        assert abs(c.mean() - 200) < 6 and abs(r.mean() - 150) < 6 and (f >= 0).all()
+    found = [[painter.item_near(*at, reach=4) for at in places] for painter in (fine, coarse)]
+    assert np.mean(np.equal(*found)) > 0.95 and max(found[1]) == 0

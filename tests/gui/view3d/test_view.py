@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+import gui.view3d.view as view_module
 from gui.state.derived import Derived
 from gui.state.selection import NOTHING, Target
 from gui.state.session import Session
@@ -307,3 +308,20 @@ def test_a_document_that_is_being_prepared_leaves_the_picture_as_it_was(window, 
     waiting[0]()
     view.settle()
     assert view._mesh is smaller.object and view.painter is before
+
+
+def test_a_large_picture_is_coarse_while_it_moves_and_fine_at_rest(window, monkeypatch):
+    view = window.view
+    monkeypatch.setattr(view_module, "_COARSE", 10_000)
+    at = window.pixel(20, 20)
+    before = window.colour(at)
+    assert view.painter.coarser == 1
+    view.move(view.camera.panned(0, 0))
+    window.root.update()
+    assert view.painter.coarser == 2 and view.painter._image.shape[1] == -(-view.camera.width // 2)
+    assert view.hit_at(*at) is not None and np.abs(np.subtract(window.colour(at), before)).max() < 30
+    view.move(view.camera.panned(40, 0))
+    window.root.update()
+    assert np.abs(np.subtract(window.colour((at[0] + 40, at[1])), before)).max() < 30, "only what differs is sent, and all of that"
+    window.settle()
+    assert view.painter.coarser == 1

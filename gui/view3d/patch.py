@@ -1,0 +1,27 @@
+"""Which part of a picture differs from the one before."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Place = tuple[int, int]
+
+
+def differing(before: NDArray[np.uint8], now: NDArray[np.uint8]) -> tuple[Place, Place]:
+    """First row and column that differ, and those behind the last; the whole where the size is another, nothing where all is the same.
+
+    Examples
+    --------
+    >>> before, now = np.zeros((5, 6, 3), np.uint8), np.zeros((5, 6, 3), np.uint8)
+    >>> now[1:3, 4, 2] = 7
+    >>> differing(before, now), differing(now, now), differing(before[:1], now)
+    (((1, 4), (3, 5)), ((0, 0), (0, 0)), ((0, 0), (5, 6)))
+    """
+    if before.shape != now.shape:
+        return (0, 0), (now.shape[0], now.shape[1])
+    other = (before != now).any(axis=2)
+    rows, columns = np.flatnonzero(other.any(axis=1)), np.flatnonzero(other.any(axis=0))
+    if not len(rows):
+        return (0, 0), (0, 0)
+    return (int(rows[0]), int(columns[0])), (int(rows[-1]) + 1, int(columns[-1]) + 1)
