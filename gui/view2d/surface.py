@@ -80,7 +80,8 @@ class Surface(FigureCanvasTkAgg):
         """Draw everything, soon; many calls are one."""
         # Also called by matplotlib while it makes the canvas.
         if getattr(self, "_drawing", None) is None and hasattr(self, "_letters"):
-            self._drawing = self.widget.after_idle(self._draw_now)
+            # Not idle work: what both views have to draw of a large document would be one wait of twice the length.
+            self._drawing = self.widget.after(0, self._draw_now)
 
     def refresh(self) -> None:
         """Draw the moving part anew, soon; many calls are one."""
