@@ -16,6 +16,9 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
+import numpy as np
+
+from calibration.control.frozen import Freezes
 from calibration.control.laws import Beyond, Branches, Full, Published, Rule, Wanted
 from calibration.strain.document import SensorCalibration
 from calibration.strain.models import BranchModel
@@ -33,6 +36,10 @@ MAX_AGE_S = 0.1
 HOLD_S = 0.1
 #: After a stop the speed may grow by this, deg/s^2: from rest to the limit in a second. What happened meanwhile nobody knows.
 RESUME_DEG_S2 = 500.0
+#: A reading further outside the calibrated ones than this, in their spans, was not read off a joint: a broken wire, or a wrong digit.
+#: A joint that goes 15 degrees beyond a range of 70, where its sensor is three times as steep as on average, is 0.64 outside (the
+#: human's in the paper; the robot's 0.34); an open wire of the robot's, at 0 or 3.3 V, is 2.4 outside at least.
+FAR_SPANS = 1.0
 
 
 @dataclass(frozen=True)
@@ -127,17 +134,34 @@ class JointController:
         else:
             times = {"lag_s": lag_s, "delay_s": delay_s, "period_s": period_s, "hole_s": HOLD_S}
             self._rule = Full(branches_of(human, "human"), branches_of(robot, "robot"), gain, **times)
+        self._readings = _calibrated(human), _calibrated(robot)
+        self._seen: list[tuple[float, int] | None] = [None, None]
+        span = robot.calibration.high - robot.calibration.low
+        self._freezes = Freezes(range_deg=span, late_s=lag_s + delay_s, period_s=period_s)
         self._safe = 0.0
         self._last = Command(0.0, "stop", "no frame yet", math.nan, math.nan, Beyond(), False)
         self._good_at: float | None = None
         self._resumed_at: float | None = None
 
+    def begin(self) -> None:
+        """The joint stands still, wherever the human's is: the speed will grow from 0, as after a stop."""
+        self._good_at = -math.inf
+
     def step(self, time: float, human: Frame | None, robot: Frame | None) -> Command:
         """The command from now (`time`, s, by the clock of the frames' `host_time`) until the next step."""
-        unfit = [_unfit(time, human, self.human, "human"), _unfit(time, robot, self.robot, "robot")]
+        frames, inputs = (human, robot), (self.human, self.robot)
+        unfit = [
+            _unfit(time, frame, of, whose, within)
+            for frame, of, whose, within in zip(frames, inputs, ("human", "robot"), self._readings, strict=True)
+        ]
+        new = [None if unfit[k] else self._new(k, frame, inputs[k].column) for k, frame in enumerate(frames)]
+        frozen = self._freezes.step(time, new[0], new[1], self._last.speed)
+        for k, whose in enumerate(("human", "robot")):
+            if frozen[k] and not unfit[k]:
+                unfit[k] = f"the {whose}'s channel {inputs[k].calibration.signal} {frozen[k]}; check its wires"
         readings = [
             None if why or frame is None else (float(frame.values[each.column]) - each.calibration.u0) / each.calibration.u0
-            for why, frame, each in zip(unfit, (human, robot), (self.human, self.robot), strict=True)
+            for why, frame, each in zip(unfit, frames, inputs, strict=True)
         ]
         # Also without a good frame of one of them: the other's is remembered, and that time went by.
         wanted = self._rule.step(time, readings[0], readings[1], self._last.speed)
@@ -148,6 +172,13 @@ class JointController:
         self._last = self._run(time, wanted)
         self._safe, self._good_at = self._last.speed, time
         return self._last
+
+    def _new(self, k: int, frame: Frame | None, column: int) -> float | None:
+        """What a frame reads that was not there in the last step."""
+        if frame is None or self._seen[k] == (frame.host_time, frame.sequence):
+            return None
+        self._seen[k] = frame.host_time, frame.sequence
+        return float(frame.values[column])
 
     def _run(self, time: float, wanted: Wanted) -> Command:
         if self._good_at is not None and (self._last.state == "stop" or not 0 <= time - self._good_at <= HOLD_S + self.period_s):
@@ -203,7 +234,14 @@ def require_two_sensors(human: Input, robot: Input, *, names: tuple[str, str], o
         raise InputError(f"{same}; the human's sensor and the robot's are two: give each its own calibration")
 
 
-def _unfit(time: float, frame: Frame | None, of: Input, whose: str) -> str:
+def _calibrated(of: Input) -> tuple[float, float]:
+    """The least and the greatest reading (dU/U0) that the calibration knows."""
+    curve = of.calibration.model.curve
+    known = curve.signal(np.linspace(curve.low, curve.high, 101))
+    return float(known.min()), float(known.max())
+
+
+def _unfit(time: float, frame: Frame | None, of: Input, whose: str, within: tuple[float, float]) -> str:
     """Why a frame must not be used; empty where it may."""
     if frame is None:
         return f"no frame of the {whose} sensor"
@@ -215,4 +253,12 @@ def _unfit(time: float, frame: Frame | None, of: Input, whose: str) -> str:
         return f"the {whose} sensor's frame is invalid"
     if frame.saturated[of.column]:
         return f"the {whose} sensor is saturated"
+    u0, (low, high) = of.calibration.u0, within
+    reading = (float(frame.values[of.column]) - u0) / u0
+    if not low - FAR_SPANS * (high - low) <= reading <= high + FAR_SPANS * (high - low):
+        known = sorted((u0 * (1 + low), u0 * (1 + high)))
+        return (
+            f"the {whose}'s channel {of.calibration.signal} reads {frame.values[of.column]:.5g}, and was calibrated from {known[0]:.5g} to "
+            f"{known[1]:.5g}: a broken wire, or a wrong digit"
+        )
     return ""

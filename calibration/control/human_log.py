@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from calibration.control.protocols import Motion
 from calibration.finger.simulated import RATE_HZ
 from calibration.strain.document import SensorCalibration
+from calibration.strain.rows import in_order
 from skinfab.errors import InputError
 from skinfab.readout.frame import Frame
 from skinfab.readout.table import Table
@@ -37,17 +38,18 @@ def human_motion(table: Table, human: SensorCalibration) -> tuple[Motion, list[F
     Raises
     ------
     InputError
-        There is no such column, or too short a log.
+        There is no such column, too short a log, or its rows are not in the order of time.
     """
     volts = table.column(human.signal)
-    notes = [*table.notes]
+    clock, anew = in_order(table.time, table.file)
+    notes = [*table.notes, *anew]
     # As `calibration.strain.prepare` does it: stamps in whole milliseconds are often doubled, and no fault of the readings.
-    forward = np.concatenate([[True], table.time[1:] > np.maximum.accumulate(table.time)[:-1]])
+    forward = np.concatenate([[True], clock[1:] > np.maximum.accumulate(clock)[:-1]])
     if count := int(np.count_nonzero(~forward)):
         first = int(np.argmin(forward)) + 1
         notes.append(f"{table.file}: {count} of {len(volts)} rows stand still or go back in time (row {first} first); they were left out")
     good = forward & np.isfinite(volts)
-    since = table.time[good]
+    since = clock[good]
     if len(since) < 2 or since[-1] - since[0] < 1.0:
         raise InputError(f"{table.file}: fewer than 1 s of readings of {human.signal!r}; there is nothing to follow")
     measured = human.angle in table.columns and bool(np.isfinite(table.columns[human.angle][good]).all())

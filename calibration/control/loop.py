@@ -82,6 +82,7 @@ def run_loop(source: Source, controller: JointController, send: Callable[[float]
     gc.freeze()
     time.sleep(controller.period_s)  # whoever reads the source in a thread of its own stood still meanwhile, and catches up
     began = time.monotonic()
+    controller.begin()
     try:
         while time.monotonic() < began + seconds:
             frame = _newest(source, PATIENCE * controller.period_s)

@@ -209,20 +209,21 @@ def _write(args: argparse.Namespace, runs: Sequence[Run], result: dict[str, Any]
         draw_runs(runs, folder / "control.png", title=title)
 
 
-def _outside_of(run: dict[str, Any]) -> str:
-    """What was out of the calibrated range, and how far the motion went.
+def outside_words(run: dict[str, Any]) -> str:
+    """What was out of the calibrated range, and how far the motion went, where that is known.
 
     Examples
     --------
-    >>> _outside_of({"outside": 0.25, "outside_of": {"human": 0.25, "target": 0.0, "robot": 0.125}, "motion_deg": [10.0, 85.0]})
+    >>> outside_words({"outside": 0.25, "outside_of": {"human": 0.25, "target": 0.0, "robot": 0.125}, "motion_deg": [10.0, 85.0]})
     " (the human's reading 25 %, the target 0 %, the robot's reading 12 %, in a motion from 10 to 85 degrees)"
     """
     if not run["outside"]:
         return ""
-    of, (low, high) = run["outside_of"], run["motion_deg"]
+    of = run["outside_of"]
+    motion = f", in a motion from {run['motion_deg'][0]:.0f} to {run['motion_deg'][1]:.0f} degrees" if "motion_deg" in run else ""
     return (
         f" (the human's reading {100 * of['human']:.0f} %, the target {100 * of['target']:.0f} %, the robot's reading "
-        f"{100 * of['robot']:.0f} %, in a motion from {low:.0f} to {high:.0f} degrees)"
+        f"{100 * of['robot']:.0f} %{motion})"
     )
 
 
@@ -233,7 +234,7 @@ def _lines(result: dict[str, Any]) -> list[str]:
         beside = "" if paper is None else f" (the paper's: {paper})"
         lines.append(
             f"{each['protocol']}: mean error {each['mean_error_deg']:.2f} degrees{beside}, worst {each['worst_error_deg']:.1f}; "
-            f"out of range {100 * each['outside']:.0f} % of the time{_outside_of(each)}, clamped {100 * each['clamped']:.0f} %, "
+            f"out of range {100 * each['outside']:.0f} % of the time{outside_words(each)}, clamped {100 * each['clamped']:.0f} %, "
             f"held or stopped {100 * each['held_or_stopped']:.0f} %"
         )
     return lines

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
@@ -13,9 +13,12 @@ from skinfab.cli import steps
 from skinfab.errors import InputError
 
 if TYPE_CHECKING:
-    from calibration.control.controller import Input
+    from calibration.control.controller import Command, Input
     from calibration.control.loop import Loop
     from calibration.control.margin import Margin
+
+#: So many stops are told one by one.
+_TOLD = 5
 
 
 def run_port(args: argparse.Namespace, human: Input, robot: Input) -> int:
@@ -23,7 +26,7 @@ def run_port(args: argparse.Namespace, human: Input, robot: Input) -> int:
     from calibration.control.controller import JointController
     from calibration.control.loop import run_loop
     from calibration.control.rate import measured_rate
-    from skinfab.cli.control import judge
+    from skinfab.cli.control import judge, outside_words
     from skinfab.cli.record import outage_notes, outages
     from skinfab.readout.priority import real_time
     from skinfab.readout.serial_port import SerialPort
@@ -43,18 +46,21 @@ def run_port(args: argparse.Namespace, human: Input, robot: Input) -> int:
             loop = run_loop(port, JointController(human, robot, **options, period_s=1 / rate), send, seconds=args.seconds)
         counts, gone = port.counts, outages(port, began, time.time())
     result = facts(args, loop, margin, simulated=stream.simulated)
-    result |= {"rate_hz": rate, "real_time": granted, "outages": gone, "notes": told}
+    seen = _idle_notes(loop)
+    result |= {"rate_hz": rate, "real_time": granted, "outages": gone, "notes": [*told, *seen]}
     result["counts"] = {"lost": counts.lost, "bad": counts.bad, "late": counts.late, "reopened": counts.reopened}
     _write(args, loop, result)
     if args.json:
         print(json.dumps(result, allow_nan=False))
         return 0
     steps.say(outage_notes(args.port, gone))
+    steps.say(seen)
     taken = result["latency_ms"]
     print(
         f"{result['commands']} commands in {args.seconds:g} s to {rate:.4g} frames a second: from frame to "
         f"command {taken['median']:.2f} ms, worst {taken['worst']:.2f}; "
-        f"held or stopped {100 * result['held_or_stopped']:.0f} % of them; {counts.lost} frames lost, {counts.bad} bad; "
+        f"held or stopped {100 * result['held_or_stopped']:.0f} % of them, out of range {100 * result['outside']:.0f} %"
+        f"{outside_words(result)}; {counts.lost} frames lost, {counts.bad} bad; "
         f"{'with' if granted else 'without'} real-time priority"
         if taken
         else f"no frame came from {args.port} in {args.seconds:g} s"
@@ -76,6 +82,33 @@ def _rate_told(said_hz: float, rate_hz: float) -> list[str]:
     if not said_hz or abs(rate_hz - said_hz) <= RATE_PART * said_hz:
         return []
     return [f"the board sends {rate_hz:.3g} frames a second, and says {said_hz:g}; what was measured is used"]
+
+
+def _idle_notes(loop: Loop) -> list[str]:
+    """When the joint was not driven by what was read, and why: each stop, and how often a command was held."""
+    spans: list[tuple[int, int]] = []
+    for k, command in enumerate(loop.commands):
+        if command.state != "run":
+            spans = [*spans[:-1], (spans[-1][0], k)] if spans and spans[-1][1] == k - 1 else [*spans, (k, k)]
+    stops = [(first, last) for first, last in spans if loop.commands[last].state == "stop"]
+    notes = [
+        f"from {loop.time[first]:.2f} s to {f'{loop.time[last + 1]:.2f} s' if last + 1 < len(loop.commands) else 'the end'} the last "
+        f"command was held and the joint then stopped: {_why(loop.commands[first : last + 1])}"
+        for first, last in stops[:_TOLD]
+    ]
+    if len(stops) > _TOLD:
+        notes.append(f"the joint was stopped {len(stops) - _TOLD} times more; control.csv says why")
+    if held := [first for first, last in spans if loop.commands[last].state == "hold"]:
+        first = held[0]
+        times = "once" if len(held) == 1 else f"{len(held)} times, first"
+        notes.append(f"the last command was held {times} at {loop.time[first]:.2f} s: {loop.commands[first].reason}")
+    return notes
+
+
+def _why(commands: Sequence[Command]) -> str:
+    """The last reason; that a frame was missing meanwhile is none where there is another."""
+    reasons = [command.reason for command in commands]
+    return next((reason for reason in reversed(reasons) if not reason.startswith("no frame")), reasons[-1])
 
 
 @contextmanager
@@ -105,7 +138,11 @@ def facts(args: argparse.Namespace, loop: Loop, margin: Margin, *, simulated: bo
     """The result, ready for JSON."""
     import numpy as np
 
+    from calibration.control.laws import Beyond
     from skinfab.cli.control import margin_facts
+
+    def share(of: list[bool]) -> float:
+        return float(np.mean(of)) if of else 0.0
 
     taken = 1e3 * loop.latency_s[np.isfinite(loop.latency_s)]
     jitter = 1e3 * np.abs(loop.jitter_s)
@@ -115,8 +152,9 @@ def facts(args: argparse.Namespace, loop: Loop, margin: Margin, *, simulated: bo
         "margin": margin_facts(margin),
         "commands": len(loop.commands),
         "passed_over": loop.passed_over,
-        "held_or_stopped": float(np.mean([command.state != "run" for command in loop.commands])) if loop.commands else 0.0,
-        "outside": float(np.mean([command.outside for command in loop.commands])) if loop.commands else 0.0,
+        "held_or_stopped": share([command.state != "run" for command in loop.commands]),
+        "outside": share([command.outside for command in loop.commands]),
+        "outside_of": {name: share([getattr(command.beyond, name) for command in loop.commands]) for name in Beyond._fields},
         "latency_ms": {"median": float(np.median(taken)), "p99": float(np.quantile(taken, 0.99)), "worst": float(taken.max())}
         if len(taken)
         else None,

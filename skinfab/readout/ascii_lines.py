@@ -83,9 +83,11 @@ class LineDecoder:
         """Why what is read may mean something else, a sentence; empty where nothing speaks for that."""
         if not (self._guessed and self._commas.decimal):
             return ""
+        channels = len(self._names)
+        numbers = "one number with a decimal comma" if channels == 2 else f"{channels // 2} numbers with decimal commas"
         return (
-            f"{self._commas.example!r} is read as two channels, and may be one number with a decimal comma; let the board print "
-            "points, or send a line of headings: with two names it is two channels"
+            f"{self._commas.example!r} is read as {channels} channels, and may be {numbers}; let the board print "
+            f"points, or send a line of headings: with {channels} names it is {channels} channels"
         )
 
     @property
@@ -220,10 +222,10 @@ class LineDecoder:
 
 
 class _Commas:
-    """Are lines of two cells perhaps one number each? 1,050 and 1,125: a whole number, and digits that are always as many."""
+    """Are a line's cells perhaps halves of numbers? 1,050 and 1,125: a whole number, and digits that are always as many."""
 
     def __init__(self) -> None:
-        self._digits: int | None = None
+        self._digits: list[int] | None = None
         self._never = self._zero = False
         self.example = ""
 
@@ -234,11 +236,14 @@ class _Commas:
 
     def see(self, cells: list[bytes]) -> None:
         """The cells of a line."""
-        if len(cells) != 2 or not (cells[0].lstrip(b"+-").isdigit() and cells[1].isdigit()) or self._digits not in (None, len(cells[1])):
+        whole, parts = cells[::2], cells[1::2]
+        digits = [len(part) for part in parts]
+        halves = len(whole) == len(parts) and all(a.lstrip(b"+-").isdigit() and b.isdigit() for a, b in zip(whole, parts, strict=True))
+        if not halves or self._digits not in (None, digits):
             self._never = True
             return
-        self._digits = len(cells[1])
-        if self._digits > 1 and cells[1].startswith(b"0") and not self._zero:
+        self._digits = digits
+        if not self._zero and any(len(part) > 1 and part.startswith(b"0") for part in parts):
             self._zero, self.example = True, b",".join(cells).decode("ascii")
 
 

@@ -4,7 +4,11 @@ import csv
 import json
 import os
 import pty
+import random
 import threading
+import time
+import tty
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -173,18 +177,109 @@ def test_times_in_whole_milliseconds_are_left_out_where_they_are_doubled(
     calibrations: dict[str, str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     lines = (ROOT / "calibration/logs/human_finger.csv").read_text().splitlines()[:1500]
-    doubled = [*lines[:500], lines[499], *lines[500:900], *lines[800:810], *lines[900:]]
+    doubled = [*lines[:500], lines[499], *lines[500:900], *lines[800:805], *lines[900:]]
     (tmp_path / "ms.csv").write_text("\n".join(doubled))
     words = ["--human", calibrations["human_branches"], "-o", str(tmp_path / "o"), "--json"]
     assert main(["control", str(tmp_path / "ms.csv"), *words]) == 0
     result = json.loads(capsys.readouterr().out)
     head = 1 + next(k for k, line in enumerate(lines) if not line.startswith("#"))
     assert result["notes"] == [
-        f"ms.csv: 11 of {len(doubled) - head} rows stand still or go back in time (row {500 - head + 1} first); they were left out"
+        f"ms.csv: 6 of {len(doubled) - head} rows stand still or go back in time (row {500 - head + 1} first); they were left out"
     ]
     (tmp_path / "plain.csv").write_text("\n".join(lines))
     assert main(["control", str(tmp_path / "plain.csv"), *words]) == 0
     assert json.loads(capsys.readouterr().out)["runs"][0]["mean_error_deg"] == result["runs"][0]["mean_error_deg"]
+
+
+def test_shuffled_rows_are_refused_and_a_restart_is_a_hole(
+    calibrations: dict[str, str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """As `calibrate` does. A maximum of the times so far would leave the few rows that happen to be the latest."""
+    lines = (ROOT / "calibration/logs/human_finger.csv").read_text().splitlines()
+    head = 1 + next(k for k, line in enumerate(lines) if not line.startswith("#"))
+    rows = lines[head:]
+    random.Random(0).shuffle(rows)
+    (tmp_path / "log.csv").write_text("\n".join([*lines[:head], *rows]))
+    words = ["control", str(tmp_path / "log.csv"), "--human", calibrations["human_branches"], "-o", str(tmp_path / "o"), "--json"]
+    assert main(words) == 1
+    assert "log.csv: rows are not in the order of time: row" in capsys.readouterr().err and not (tmp_path / "o").exists()
+    (tmp_path / "log.csv").write_text("\n".join([*lines[: head + 1000], *lines[head : head + 500]]))
+    assert main(words) == 0
+    result = json.loads(capsys.readouterr().out)
+    (note,) = result["notes"]
+    assert "row 1001: times begin anew" in note and "what follows is taken as after a hole" in note
+    (run,) = result["runs"]
+    assert 15.5 < run["seconds"] < 16.5 and 0 < run["held_or_stopped"] < 0.1
+
+
+class Lines:
+    """A board that prints lines: what `fault` makes of both sensors at rest with a little noise."""
+
+    def __init__(self, fault: Callable[[float, float], tuple[float, float]]) -> None:
+        self._fault = fault
+        self._master, self._slave = pty.openpty()
+        tty.setraw(self._slave)
+        self.path = os.ttyname(self._slave)
+        self._ended = threading.Event()
+        self._thread = threading.Thread(target=self._send)
+
+    def _send(self) -> None:
+        noise, began = random.Random(0), time.monotonic()
+        rest = [sensor.u0 * (1 + float(sensor.curve.signal(40.0))) for sensor in (HUMAN, ROBOT)]
+        for k in range(3000):
+            human, robot = (each * (1 + 1e-4 * noise.gauss(0, 1)) for each in rest)
+            values = self._fault(human, robot)
+            heading = "sequence,time_ms,human_V,robot_V\n" if k % 50 == 0 else ""
+            os.write(self._master, f"{heading}{k},{10 * k},{values[0]:.6f},{values[1]:.6f}\n".encode())
+            if self._ended.wait(max(began + (k + 1) / 100 - time.monotonic(), 0)):
+                return
+
+    def __enter__(self) -> "Lines":
+        self._thread.start()
+        return self
+
+    def __exit__(self, *fault: object) -> None:
+        self._ended.set()
+        self._thread.join()
+        os.close(self._master)
+        os.close(self._slave)
+
+
+def test_a_broken_wire_is_told_and_what_was_out_of_range_too(
+    calibrations: dict[str, str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A board that sends lines says no range: 0 V of the robot's is no saturated reading, and it is not followed all the same."""
+    master, slave = pty.openpty()
+    tty.setraw(slave)
+    driven = threading.Event()
+
+    def hand() -> None:
+        lines = 0
+        while data := os.read(master, 4096):
+            lines += data.count(b"\n")
+            if lines >= 100:
+                driven.set()
+            if data.endswith(b"end"):
+                return
+
+    hands = threading.Thread(target=hand)
+    hands.start()
+    words = ["--human", calibrations["human_branches"], "--robot", calibrations["robot_branches"], "--commands", os.ttyname(slave)]
+    try:
+        with Lines(lambda human, robot: (human, 0.0 if driven.is_set() else robot)) as board:
+            assert main(["control", "--port", board.path, *words, "--seconds", "4", "-o", str(tmp_path)]) == 0
+    finally:
+        os.write(slave, b"end")
+        hands.join()
+        os.close(master)
+        os.close(slave)
+    printed = capsys.readouterr()
+    (said,) = [line for line in printed.err.splitlines() if "the robot's channel robot_V reads 0, and was calibrated from 1.6" in line]
+    assert "to the end the last command was held and the joint then stopped" in said
+    result = json.loads((tmp_path / "control.json").read_text())
+    assert said.removeprefix("note: ") in result["notes"] and 0.02 < result["held_or_stopped"] < 0.9
+    assert set(result["outside_of"]) == {"human", "target", "robot"}
+    assert f"out of range {100 * result['outside']:.0f} %" in printed.out
 
 
 def test_an_interrupted_run_leaves_the_one_before_as_it_was(

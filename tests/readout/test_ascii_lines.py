@@ -1,5 +1,7 @@
 """Lines of numbers: with and without headings, cut at both ends, and never a crash."""
 
+import re
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -148,3 +150,28 @@ def test_a_line_without_end_is_not_kept() -> None:
     assert decoder.bad == 1
     decoder.feed(b"\na,b\n1,2\n", host_time=0.0)
     assert decoder.stream is not None
+
+
+def fed(lines: str) -> LineDecoder:
+    """A decoder that was given these lines for two seconds."""
+    decoder = LineDecoder()
+    for k in range(40):
+        decoder.feed(f"{lines.splitlines()[k % len(lines.splitlines())]}\n".encode(), host_time=k / 20)
+    return decoder
+
+
+@pytest.mark.parametrize(
+    ("lines", "says"),
+    [
+        ("1,050\n1,125", "'1,050' is read as 2 channels, and may be one number with a decimal comma; .*with 2 names it is 2 channels"),
+        ("1,050,2,030\n1,125,2,110", "'1,050,2,030' is read as 4 channels, and may be 2 numbers with decimal commas; let the board print"),
+        ("1,125,2,03\n1,125,2,11", "'1,125,2,03' is read as 4"),  # each number has digits of its own
+        ("1,125,2,130\n1,225,2,110", ""),  # no zero leads
+        ("1,050,2,030\n1,5,2,030", ""),  # not always as many
+        ("1,050,2\n1,125,3", ""),  # three cells are no pairs
+        ("1,050,2.5,030\n1,125,2.5,010", ""),  # points there are
+    ],
+)
+def test_cells_that_may_be_halves_of_numbers(lines: str, says: str) -> None:
+    doubt = fed(lines).doubt
+    assert re.search(says, doubt) if says else doubt == ""

@@ -1,16 +1,17 @@
 """Where joint control fails: each test first shows the plain way fail, then what is done instead."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
-from calibration.control.controller import LAWS, RESUME_DEG_S2, Input, JointController, Law
+from calibration.control.controller import LAWS, RESUME_DEG_S2, Command, Input, JointController, Law
 from calibration.control.margin import judged
 from calibration.control.protocols import Motion, follow, uniform
 from calibration.finger.logs import calibrated, prepared
-from calibration.finger.simulated import HUMAN, RATE_HZ, ROBOT, Finger, Plant, Reader
+from calibration.finger.simulated import HUMAN, RATE_HZ, ROBOT, Finger, FingerSensor, Plant, Reader
 from calibration.strain.curve import fit_curve
 from calibration.strain.document import SensorCalibration
 from calibration.strain.models import CurveModel
@@ -82,6 +83,17 @@ def test_a_curve_that_turns_has_two_angles_for_a_reading() -> None:
     assert made.monotone and not made.angle(float(made.signal(70.0)))[1]
 
 
+@pytest.fixture
+def credulous(monkeypatch: pytest.MonkeyPatch) -> Callable[[], None]:
+    """From its call on every reading that is a number is believed, and repeated for ever."""
+
+    def believe() -> None:
+        monkeypatch.setattr("calibration.control.controller.FAR_SPANS", np.inf)
+        monkeypatch.setattr("calibration.control.frozen.FROZEN_S", np.inf)
+
+    return believe
+
+
 def stale(plain: tuple[Input, Input], since: float, *, watchdog: bool) -> tuple[float, str]:
     """Where the joint is 12 s after the human's board froze at `since`, with or without a look at the frames' age."""
     motion, finger = uniform(), Finger(Plant(), seed=0)
@@ -102,23 +114,139 @@ def _restamped(frame: Frame, time: float) -> Frame:
     return Frame(frame.device_time, time, frame.sequence, frame.values, frame.valid, frame.saturated)
 
 
-def test_a_frozen_board_drives_the_joint_against_its_stop(plain: tuple[Input, Input]) -> None:
+def test_a_frozen_board_drives_the_joint_against_its_stop(plain: tuple[Input, Input], credulous: Callable[[], None]) -> None:
     """Both sensors frozen while the human bends: the same error over and over moves the joint on and on."""
+    # Count and clock go on, so that no frame is stale, but the readings had noise.
+    where, state = stale(plain, 2.0, watchdog=False)
+    assert state == "stop" and abs(where - uniform().angle[200]) < 30
+    credulous()
     ran_on, state = stale(plain, 2.0, watchdog=False)
     assert ran_on > 90 and state == "run"
     where, state = stale(plain, 2.0, watchdog=True)
     assert state == "stop" and abs(where - uniform().angle[200]) < 30
 
 
-def test_a_loose_wire_reads_as_a_rail(plain: tuple[Input, Input]) -> None:
+def test_a_loose_wire_reads_as_a_rail(plain: tuple[Input, Input], credulous: Callable[[], None]) -> None:
     """Taken at its word, a reading at the rail is a finger bent as far as it goes; it is not taken at its word."""
     good = Reader(ROBOT, 0.0, np.random.default_rng(0)).read(0.0, 40.0)
     rail = np.array([3.3])
     lying, honest = (Frame(0.0, 0.0, 0, rail, np.array([True]), np.array([flag])) for flag in (False, True))
-    believed = JointController(*plain, law="p", gain=3.0).step(0.0, lying, good)
-    assert believed.speed > 60 and believed.outside
     refused = JointController(*plain, law="p", gain=3.0).step(0.0, honest, good)
     assert refused.speed == 0.0 and refused.state == "stop" and "saturated" in refused.reason
+    # A board that sends lines of text declares no range.
+    refused = JointController(*plain, law="p", gain=3.0).step(0.0, lying, good)
+    assert refused.speed == 0.0 and "human_V reads 3.3, and was calibrated from 1.50" in refused.reason
+    credulous()
+    believed = JointController(*plain, law="p", gain=3.0).step(0.0, lying, good)
+    assert believed.speed > 60 and believed.outside
+
+
+def driven(
+    inputs: tuple[Input, Input], fault: Callable[[float, float, float], tuple[float, float]], *, sensors: tuple[FingerSensor, ...]
+) -> tuple[np.ndarray, np.ndarray, list[Command]]:
+    """The human's angles, the robot's and the commands of 8 s of 45 + 25 sin(t) degrees; `fault` makes readings of time and readings."""
+    controller, finger = JointController(*inputs, law="full", gain=3.99), Finger(Plant(sensor=sensors[1]), seed=0, angle=45.0)
+    reader, speed, rows, commands = Reader(sensors[0], 0.05, np.random.default_rng(1)), 0.0, [], []
+    for k in range(round(8 * RATE_HZ)):
+        time = k / RATE_HZ
+        angle = 45 + 25 * np.sin(time)
+        frames = (reader.read(time, angle), finger.step(time, speed))
+        values = fault(time, *(float(frame.values[0]) for frame in frames))
+        human, robot = (replace(frame, values=np.array([value])) for frame, value in zip(frames, values, strict=True))
+        commands.append(controller.step(time, human, robot))
+        speed = commands[-1].speed
+        rows.append((angle, finger.angle))
+    angles, went = np.array(rows).T
+    return angles, went, commands
+
+
+@pytest.mark.parametrize("rail", [0.0, 3.3])
+def test_a_broken_wire_of_the_robots_drives_it_into_its_stop(
+    branches: tuple[Input, Input], credulous: Callable[[], None], rail: float
+) -> None:
+    """Taken at the end of the curve, the robot never gets where it should be, and is told to go on for ever."""
+
+    def broken(time: float, human: float, robot: float) -> tuple[float, float]:
+        return human, rail if time >= 3.0 else robot
+
+    _, went, commands = driven(branches, broken, sensors=(HUMAN, ROBOT))
+    assert commands[-1].state == "stop" and f"robot_V reads {rail:g}, and was calibrated from" in commands[-1].reason
+    assert abs(went[-1] - went[300]) < 15
+    assert [command.state for command in commands[300:315]] == ["hold"] * 10 + ["stop"] * 5
+    credulous()
+    _, went, commands = driven(branches, broken, sensors=(HUMAN, ROBOT))
+    assert not 1 < went[300:].min() < went[300:].max() < 94 and commands[-1].state == "run"
+
+
+@pytest.mark.parametrize("wrong", [60.0, -1.0])
+def test_one_wrong_digit_is_no_jump(branches: tuple[Input, Input], credulous: Callable[[], None], wrong: float) -> None:
+    """A single frame that no joint makes is passed over: the last command once more."""
+    silent = (replace(HUMAN, noise=0.0), replace(ROBOT, noise=0.0))
+
+    def spike(time: float, human: float, robot: float) -> tuple[float, float]:
+        return wrong if abs(time - 6.0) < 1e-6 else human, robot
+
+    _, _, commands = driven(branches, spike, sensors=silent)
+    assert [command.state for command in commands[599:602]] == ["run", "hold", "run"]
+    assert max(abs(command.speed) for command in commands[595:640]) < 70
+    credulous()
+    _, _, commands = driven(branches, spike, sensors=silent)
+    assert max(abs(command.speed) for command in commands[595:640]) > 200
+
+
+@pytest.mark.parametrize("noise", [1.0, 0.0])
+def test_frozen_readings_are_not_followed(branches: tuple[Input, Input], credulous: Callable[[], None], noise: float) -> None:
+    """Both repeated to the last digit while count and clock go on: the joint does not follow any more, and nothing says so."""
+    last = [np.nan, np.nan]
+
+    def freeze(time: float, human: float, robot: float) -> tuple[float, float]:
+        if time < 3.0:
+            last[:] = round(human, 6), round(robot, 6)
+        return last[0], last[1]
+
+    sensors = tuple(replace(sensor, noise=noise * sensor.noise) for sensor in (HUMAN, ROBOT))
+    _, went, commands = driven(branches, freeze, sensors=sensors)
+    assert commands[-1].state == "stop" and abs(went[-1] - went[300]) < 30
+    assert "human_V read the same to the last digit for" in commands[-1].reason
+    assert next(k for k, command in enumerate(commands) if command.state == "stop") <= 350
+    credulous()
+    _, _, commands = driven(branches, freeze, sensors=sensors)
+    assert commands[-1].state == "run"
+
+
+def test_a_frozen_reading_of_the_robots_alone(branches: tuple[Input, Input], credulous: Callable[[], None]) -> None:
+    """Without noise of its own: told to go further than slack is wide, a joint's reading changes."""
+    last = [np.nan]
+
+    def freeze(time: float, human: float, robot: float) -> tuple[float, float]:
+        last[0] = last[0] if time >= 3.0 else robot
+        return human, last[0]
+
+    silent = (HUMAN, replace(ROBOT, noise=0.0))
+    _, _, commands = driven(branches, freeze, sensors=silent)
+    stopped = [command for command in commands if command.state == "stop"]
+    assert "robot_V read the same" in stopped[0].reason and "it is frozen, or the joint is stuck" in stopped[0].reason
+    credulous()
+    _, went, commands = driven(branches, freeze, sensors=silent)
+    assert commands[-1].state == "run" and not 1 < went[300:].min() < went[300:].max() < 94
+
+
+@pytest.mark.parametrize("step_V", [1e-6, 1e-3, 5e-3])
+def test_a_joint_at_rest_is_no_frozen_one(branches: tuple[Input, Input], step_V: float) -> None:
+    """A human who moves and then holds still, behind converters fine and coarse, without noise: the readings repeat for seconds."""
+    silent = [replace(sensor, noise=0.0) for sensor in (HUMAN, ROBOT)]
+    for law in LAWS:
+        controller, finger = JointController(*branches, law=law, gain=3.0), Finger(Plant(sensor=silent[1]), seed=0, angle=45.0)
+        reader, speed, same, states = Reader(silent[0], 0.05, np.random.default_rng(1)), 0.0, [], set()
+        for k in range(1500):
+            time = k / RATE_HZ
+            frames = (reader.read(time, 45 + 30 * np.sin(min(time, 5.5))), finger.step(time, speed))
+            human, robot = (replace(frame, values=np.round(frame.values / step_V) * step_V) for frame in frames)
+            command = controller.step(time, human, robot)
+            speed = command.speed
+            states.add(command.state)
+            same.append(float(human.values[0]))
+        assert states == {"run"} and np.ptp(same[-300:]) == 0
 
 
 def test_play_costs_the_published_law_what_branches_do_not_lose(branches: tuple[Input, Input], plain: tuple[Input, Input]) -> None:

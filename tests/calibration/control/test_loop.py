@@ -5,11 +5,11 @@ import time
 import numpy as np
 import pytest
 
-from calibration.control.controller import Input, JointController
+from calibration.control.controller import RESUME_DEG_S2, Input, JointController
 from calibration.control.loop import FingerBoard, Loop, run_loop
-from calibration.control.protocols import uniform
+from calibration.control.protocols import Motion, uniform
 from calibration.finger.logs import calibrated
-from calibration.finger.simulated import HUMAN, ROBOT
+from calibration.finger.simulated import HUMAN, ROBOT, Plant
 from skinfab.readout.paced import PacedFrames
 from skinfab.readout.pty_server import PtyServer
 from skinfab.readout.serial_port import SerialPort
@@ -47,6 +47,23 @@ def test_frames_that_stay_away_stop_the_joint(inputs: tuple[Input, Input]) -> No
     states = [command.state for command in loop.commands]
     assert states[0] == "run" and states[-1] == "stop" and "hold" in states
     assert sent[-1] == 0.0 and np.isnan(loop.latency_s[-1]) and loop.sequence[-1] == -1
+
+
+def test_the_first_command_is_no_jump(inputs: tuple[Input, Input]) -> None:
+    """The joint stands at 10 degrees, and the human's is at 80: 280 deg/s at once, were it not for the ramp."""
+    motion = Motion("far", np.arange(60) / 100, np.full(60, 80.0))
+    near = FingerBoard(Motion("near", motion.time, np.full(60, 10.0)), seed=0)
+    human, robot = next(iter(FingerBoard(motion, seed=0))), next(iter(near))
+    assert JointController(*inputs, gain=4.0).step(human.host_time, human, robot).speed > 200
+
+    board = FingerBoard(motion, seed=0, plant=Plant())
+    board._finger = near._finger
+    sent: list[float] = []
+    with PacedFrames(board.stream, lambda: board) as source:
+        loop = run_loop(source, JointController(*inputs, gain=4.0), sent.append, seconds=0.4)
+    first = next(k for k, command in enumerate(loop.commands) if command.state == "run")
+    since = loop.time - loop.time[first]
+    assert loop.commands[first].clamped and (np.abs(sent[:-1]) <= RESUME_DEG_S2 * (since + 0.03))[first:].all() and max(sent) > 50
 
 
 def test_whatever_happens_the_joint_is_stopped(inputs: tuple[Input, Input]) -> None:
