@@ -131,5 +131,5 @@ def test_frames_read_with_another_devices_channels_are_plausible_and_refused() -
 def test_a_port_that_sends_nonsense_ends_in_one_line_not_in_a_hang() -> None:
     wire = Faults(flipped=0.5)
     with PtyServer(STREAM, FRAMES[:1000], rate_hz=0, faults=wire) as device, pytest.raises(InputError) as fault:
-        SerialPort(device.path, described_s=0.5).open()
+        SerialPort(device.path, described_s=2.0).open()
     assert "\n" not in str(fault.value) and "docs/readout.md" in str(fault.value)
