@@ -12,7 +12,7 @@ from gui.actions import Action
 from gui.desk import Desk
 from gui.jobs import tasks
 from gui.state.autosave import Autosave, Left
-from gui.state.store import Remembered
+from gui.state.store import Remembered, remember
 from skinfab.document import save_skin
 from skinfab.errors import SkinfabError
 from skinfab.material import DEFAULT_MATERIAL
@@ -98,7 +98,7 @@ class FileCommands:
         # A mesh that was only opened holds no work that could be lost.
         self._desk.session.open(opened.skin, path if is_document else None, saved=True)
         self._desk.note("open", opened.notes)
-        self.remembered = self.remembered.with_recent(path)
+        self._remember(path)
         self._opened()
 
     def recover(self, left: Left) -> None:
@@ -147,8 +147,13 @@ class FileCommands:
         self._desk.session.report("save", [])
         self._desk.session.mark_saved(path)
         self._desk.say(f"Saved {path}.")
-        self.remembered = self.remembered.with_recent(path)
+        self._remember(path)
         return True
+
+    def _remember(self, path: Path) -> None:
+        """Among the recent files, written at once: a crash must not take it."""
+        self.remembered = self.remembered.with_recent(path)
+        self._desk.guarded("remember", lambda: remember(self._desk.state, self.remembered))
 
     def _keep_copy(self) -> None:
         session = self._desk.session

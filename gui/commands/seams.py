@@ -178,6 +178,8 @@ class SeamCommands:
     def _follow(self) -> None:
         """Open the object along its seams as they are now, unless the pieces are those already."""
         skin = self._desk.session.skin
+        for source in ("seams", "add"):  # answers to one click, which the next step leaves behind
+            self._desk.session.report(source, [])
         if skin is None:
             return
         for settled in self._settled:

@@ -115,10 +115,9 @@ def select_all_by_key(root: tk.Misc) -> None:
     def pressed(event: tk.Event) -> str | None:
         if int(event.state) & _SHIFT:
             return None  # another key
-        entry = event.widget
-        assert isinstance(entry, tk.Entry)  # those of ttk are such too
-        entry.selection_range(0, "end")
-        entry.icursor("end")
+        # By name: the entries of Tk's own file dialogs are no widgets of Python's.
+        root.tk.call(str(event.widget), "selection", "range", 0, "end")
+        root.tk.call(str(event.widget), "icursor", "end")
         return "break"
 
     for kind in ("TEntry", "Entry", "TSpinbox", "Spinbox"):

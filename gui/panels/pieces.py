@@ -25,7 +25,7 @@ class PiecesPanel(ttk.Frame):
         )
         rows = ttk.Frame(self)
         rows.pack(fill="both", expand=True)
-        self.list = ttk.Treeview(rows, columns=[c[0] for c in _COLUMNS], show="headings", height=2, selectmode="browse", name="list")
+        self.list = ttk.Treeview(rows, columns=[c[0] for c in _COLUMNS], show="headings", height=3, selectmode="browse", name="list")
         for name, heading, width in _COLUMNS:
             self.list.heading(name, text=heading)
             least = max(px(self, width), measured(self, heading))

@@ -47,7 +47,7 @@ class PropertiesPanel(ttk.Frame):
         super().__init__(master, name="properties", padding=4)
         self._session = session
         self.title = tk.StringVar(self)
-        ttk.Label(self, textvariable=self.title, style="Title.TLabel", name="title").pack(anchor="w", pady=(0, 3))
+        ttk.Label(self, textvariable=self.title, style="Title.TLabel", name="title").pack(anchor="w")
         self._forms: dict[str, SensorForm | PieceFacts | DocumentForm] = {
             "sensor": SensorForm(self, session, shelf, background, complain=complain),
             "piece": PieceFacts(self, session, derived),

@@ -31,7 +31,7 @@ _REST_MS = 250
 _UNITS = {"mm": "mm", "count": "", "switch": ""}
 
 #: Name, label and unit of the fields for where a sensor lies and how it is read.
-_PLACE = (("x", "x", "mm"), ("y", "y", "mm"), ("angle", "turn", "deg"), ("channel", "ch", ""))
+_PLACE = (("x", "at x", "mm"), ("y", "at y", "mm"), ("angle", "turn", "deg"), ("channel", "ch", ""))
 
 
 class SensorForm(ttk.Frame):
@@ -52,11 +52,11 @@ class SensorForm(ttk.Frame):
         ttk.Label(self, textvariable=self.words, wraplength=px(self, 290), justify="left", name="words").pack(anchor="w")
         self.fit = tk.StringVar(self)
         self._fit_label = ttk.Label(self, textvariable=self.fit, wraplength=px(self, 290), justify="left", name="fit")
-        self._fit_label.pack(anchor="w", pady=(0, 3))
+        self._fit_label.pack(anchor="w")
         self._place = _two_columns(self, "place")
         for k, (name, label, unit) in enumerate(_PLACE):
             self._fields[name] = self._field(self._place, name, label, unit, "", at=k)
-        ttk.Separator(self).pack(fill="x", pady=3)
+        ttk.Separator(self).pack(fill="x", pady=2)
         self._params = _two_columns(self, "params")
         self.bind("<Destroy>", lambda event: self._stop_timer())
 
@@ -119,7 +119,7 @@ class SensorForm(ttk.Frame):
         field = Field(
             master, label, unit=unit, tip=tip, name=name, complain=self._complain, width=7, take=lambda text: self._take(name, text)
         )
-        field.grid(row=at // 2, column=at % 2, sticky="ew", pady=1, padx=(0, 4))
+        field.grid(row=at // 2, column=at % 2, sticky="ew", pady=0, padx=(0, 4))
         return field
 
     def _switch(self, name: str) -> Callable[[], None]:

@@ -111,6 +111,7 @@ class View3D(ttk.Frame):
         self._moving = False
         self._labelled: tuple[object, ...] = ()
         self._slow = self._gone = False
+        self._whole = True  # all of the object is shown, and stays so when the window changes its size
         Gestures(self)
         self.canvas.bind("<Configure>", self._configured, add=True)
         self.bind("<Destroy>", self._destroyed, add=True)
@@ -160,6 +161,9 @@ class View3D(ttk.Frame):
 
     def move(self, camera: Camera) -> None:
         """See the object in another way; drawn at its best when it comes to rest."""
+        if (camera.zoom, camera.pan) != (self.camera.zoom, self.camera.pan):
+            whole = camera.whole()
+            self._whole = camera.pan == whole.pan and bool(np.isclose(camera.zoom, whole.zoom))
         self.camera = camera
         self._moving = True
         self.redraw()
@@ -250,6 +254,8 @@ class View3D(ttk.Frame):
                 self.camera = Camera.fitted(skin.object.V[skin.object.topology.used_vertices], width, height)
         if (self.camera.width, self.camera.height) != (width, height):
             self.camera = self.camera.sized(width, height)
+            if self._whole:
+                self.camera = self.camera.whole()
 
     def _paint(self, skin: Skin) -> np.ndarray[Any, np.dtype[np.uint8]]:
         assert self._solid is not None

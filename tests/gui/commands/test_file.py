@@ -8,6 +8,7 @@ import pytest
 from person import MESHES
 
 from gui.dialogs.open_mesh import MeshChoice
+from gui.state.store import recall
 from skinfab.document import load_skin
 
 
@@ -156,6 +157,7 @@ def test_recent_files_are_in_the_menu_and_open(cube, tmp_path):
     first = 1 if menu.type(0) == "tearoff" else 0
     labels = [menu.entrycget(k, "label") for k in range(first, menu.index("end") + 1)]
     assert labels[:2] == [str(MESHES / "dodecahedron.obj"), str(MESHES / "cube.obj")]
+    assert recall(cube.app.desk.state).recent[:2] == tuple(labels[:2]), "written at once, so that a crash does not take it"
     menu.invoke(first + 1)
     cube.wait()
     assert cube.skin.source.file == "cube.obj"

@@ -80,3 +80,13 @@ def test_what_has_the_focus_is_found_and_taken(root, field):
     assert not field.commit() and field.pending
     field.revert()
     assert field.entry.get() == "51"
+
+
+def test_all_is_selected_in_entries_of_tks_own_dialogs_too(root):
+    """They are made by Tcl, and Python knows them by their names alone."""
+    select_all_by_key(root)
+    root.tk.eval("ttk::entry .theirs; pack .theirs; .theirs insert 0 old.skin; focus -force .theirs")
+    root.update()
+    root.tk.eval("event generate .theirs <Control-a>")
+    root.update()
+    assert root.tk.eval(".theirs index sel.first") == "0" and root.tk.eval(".theirs index sel.last") == "8"

@@ -286,6 +286,22 @@ def test_a_window_of_another_size_gets_a_picture_of_that_size(window):
         assert window.view.painter.depth.shape == (2 * height, 2 * width)
 
 
+def test_an_object_that_is_shown_whole_stays_so_in_a_window_of_another_shape(window):
+    """Fitted in a wide pane by its width, it would lose both ends in a tall one's scale, and the other way round."""
+    for size in ("1200x300", "300x700", "1200x700"):
+        window.root.geometry(f"{size}+0+0")
+        window.settle()
+        assert window.view.camera.zoom == pytest.approx(window.view.camera.whole().zoom)
+    window.view.move(replace(window.view.camera, zoom=3.0))
+    window.root.geometry("900x700+0+0")
+    window.settle()
+    assert window.view.camera.zoom == 3.0, "what was enlarged on purpose stays"
+    window.view.fit()
+    window.root.geometry("300x700+0+0")
+    window.settle()
+    assert window.view.camera.zoom == pytest.approx(window.view.camera.whole().zoom)
+
+
 def test_a_view_that_is_gone_is_told_nothing(window, skin):
     window.view.move(window.view.camera.turned(0.1, 0))
     window.view.destroy()
