@@ -83,7 +83,8 @@ class SensorForm(ttk.Frame):
         faults = check_sensor(skin.piece(sensor.piece), sensor, skin.sensors, material=profiles.roomy)
         self.fit.set("fits" if not faults else "; ".join(faults))
         self._fit_label.configure(style="Good.TLabel" if not faults else "Error.TLabel")
-        self.words.set(_words(predict(sensor, profiles)) + self._known_strain(skin, sensor))
+        # A line for it is kept from the beginning: the form is not to grow out of its room once it is known.
+        self.words.set(_words(predict(sensor, profiles)) + (self._known_strain(skin, sensor) or "\nworn: not known yet"))
         self._stop_timer()
         self._timer = self.after(_REST_MS, self._ask_strain)
 

@@ -85,7 +85,7 @@ def test_prediction_fit_and_strain_are_said(root, session, panel):
     words, form = panel.nametowidget("sensor").words, panel.nametowidget("sensor")
     assert form.fit.get() == "fits" and "162." in words.get() and "kohm" in words.get()
     end = time.monotonic() + 10
-    while "worn" not in words.get():
+    while "worn +" not in words.get():
         assert time.monotonic() < end
         root.update()
     assert "worn +0.00 %" in words.get(), "a plate is worn as flat as it was made"
