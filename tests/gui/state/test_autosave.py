@@ -38,12 +38,12 @@ def orphan(folder):
 
 def test_the_newest_state_is_kept(autosave, tmp_path):
     for seed in range(5):
-        autosave.keep(replace(SKIN, seed=seed), Path("/work/cup.skin"))
+        autosave.keep(replace(SKIN, seed=seed), Path("/lab/cup.skin"))
     assert autosave.settle()
     assert left_over(tmp_path) == [], "this process still runs"
     orphan(tmp_path)
     (left,) = left_over(tmp_path)
-    assert left.load().seed == 4 and left.path == Path("/work/cup.skin") and abs(left.when - time.time()) < 60
+    assert left.load().seed == 4 and left.path == Path("/lab/cup.skin") and abs(left.when - time.time()) < 60
     left.discard()
     assert left_over(tmp_path) == [] and not list(tmp_path.glob("*.skin")) and not list(tmp_path.glob("*.json"))
 
