@@ -18,6 +18,7 @@ from typing import Literal
 
 import numpy as np
 
+from calibration.control.follows import Follows
 from calibration.control.frozen import Freezes
 from calibration.control.laws import Beyond, Branches, Full, Published, Rule, Wanted
 from calibration.strain.document import SensorCalibration
@@ -58,7 +59,8 @@ class Command:
     ----------
     speed : float, deg/s
     state : str
-        ``run``; ``hold``: the last safe command once more; ``stop``: nothing good has come for too long.
+        ``run``; ``block``: the joint does not go the way it was told to, and is told no more of that; ``hold``: the last safe
+        command once more; ``stop``: nothing good has come for too long.
     reason : str
         Why it is not ``run``; else empty.
     target, angle : float, deg
@@ -70,7 +72,7 @@ class Command:
     """
 
     speed: float
-    state: Literal["run", "hold", "stop"]
+    state: Literal["run", "block", "hold", "stop"]
     reason: str
     target: float
     angle: float
@@ -135,9 +137,12 @@ class JointController:
             times = {"lag_s": lag_s, "delay_s": delay_s, "period_s": period_s, "hole_s": HOLD_S}
             self._rule = Full(branches_of(human, "human"), branches_of(robot, "robot"), gain, **times)
         self._readings = _calibrated(human), _calibrated(robot)
+        curve = robot.calibration.model.curve
+        self._ends = float(curve.signal(curve.low)), float(curve.signal(curve.high))
         self._seen: list[tuple[float, int] | None] = [None, None]
         span = robot.calibration.high - robot.calibration.low
-        self._freezes = Freezes(range_deg=span, late_s=lag_s + delay_s, period_s=period_s)
+        self._freezes = Freezes()
+        self._follows = Follows(range_deg=span, late_s=lag_s + delay_s, period_s=period_s)
         self._safe = 0.0
         self._last = Command(0.0, "stop", "no frame yet", math.nan, math.nan, Beyond(), False)
         self._good_at: float | None = None
@@ -155,7 +160,7 @@ class JointController:
             for frame, of, whose, within in zip(frames, inputs, ("human", "robot"), self._readings, strict=True)
         ]
         new = [None if unfit[k] else self._new(k, frame, inputs[k].column) for k, frame in enumerate(frames)]
-        frozen = self._freezes.step(time, new[0], new[1], self._last.speed)
+        frozen = self._freezes.step(time, new[0], new[1])
         for k, whose in enumerate(("human", "robot")):
             if frozen[k] and not unfit[k]:
                 unfit[k] = f"the {whose}'s channel {inputs[k].calibration.signal} {frozen[k]}; check its wires"
@@ -165,11 +170,15 @@ class JointController:
         ]
         # Also without a good frame of one of them: the other's is remembered, and that time went by.
         wanted = self._rule.step(time, readings[0], readings[1], self._last.speed)
+        aim = self._last.target if wanted is None else wanted.target
+        self._follows.step(self._part(new[1]) if readings[1] is not None else None, aim=aim, command=self._last.speed)
+        if self._follows.stuck:
+            return self._without(time, self._in_vain("told to go both ways", "the joint is stuck, nobody drives it, or its sensor is off"))
         if wanted is None:
             return self._without(time, next(why for why in unfit if why))
         if not math.isfinite(wanted.speed):
             return self._without(time, "the law gave no number")
-        self._last = self._run(time, wanted)
+        self._last = self._blocked(wanted) if self._follows.shut(wanted.speed) else self._run(time, wanted)
         self._safe, self._good_at = self._last.speed, time
         return self._last
 
@@ -179,6 +188,26 @@ class JointController:
             return None
         self._seen[k] = frame.host_time, frame.sequence
         return float(frame.values[column])
+
+    def _part(self, reading: float | None) -> float | None:
+        """The robot's reading: 0 where its calibration begins, 1 where it ends."""
+        if reading is None:
+            return None
+        calibration = self.robot.calibration
+        begin, end = self._ends
+        return ((reading - calibration.u0) / calibration.u0 - begin) / (end - begin)
+
+    def _blocked(self, wanted: Wanted) -> Command:
+        way = "greater" if wanted.speed > 0 else "smaller"
+        reason = self._in_vain(
+            f"told to go to {way} angles", "an object or its stop holds the joint, its drive is stuck, or its sensor is off"
+        )
+        return Command(0.0, "block", reason, wanted.target, wanted.angle, wanted.beyond, True)
+
+    def _in_vain(self, told: str, cause: str) -> str:
+        return (
+            f"{told} by {self._follows.far:.0f} degrees, the robot's channel {self.robot.calibration.signal} shows nothing of it: {cause}"
+        )
 
     def _run(self, time: float, wanted: Wanted) -> Command:
         if self._good_at is not None and (self._last.state == "stop" or not 0 <= time - self._good_at <= HOLD_S + self.period_s):

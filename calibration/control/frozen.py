@@ -2,8 +2,8 @@
 
 A reading that repeats is no fault by itself: behind a coarse converter a joint at rest gives the same one for minutes, and so
 does one that turns within its slack. A channel counts as frozen where that cannot be: it showed more noise than its converter's
-step before, and shows none now; it is the robot's, and the joint was told to go further than any slack; or both stop in one
-frame in the midst of motion, which two joints do not. It is good again as soon as it reads something else.
+step before, and shows none now; or both stop in one frame in the midst of motion, which two joints do not. It is good again as
+soon as it reads something else. (A robot's reading that does not go where the joint is told to is for `follows`.)
 """
 
 from __future__ import annotations
@@ -18,9 +18,6 @@ FROZEN_S, FROZEN_FRAMES, FROZEN_TIMES = 0.3, 20, 5
 NOISY_STEPS = 2
 #: ... in more than this part of so many frames: of white noise in two thirds. A hand's tremor, 10 Hz, turns in a fifth at 100 Hz.
 NOISY_PART, NOISY_FRAMES = 0.4, 100
-#: Told to go by more than this part of the calibrated range, the robot's reading changes: slack takes 0.26 of it in the paper's finger,
-#: and from the end of the range to the joint's stop 0.21, where a curve may be flat.
-TRAVEL_PART = 0.5
 #: In the midst of motion: in each of so many frames a reading changed by so many steps of its converter.
 MOTION_FRAMES, MOTION_STEPS = 5, 3
 
@@ -84,43 +81,21 @@ class Repeats:
 
 
 class Freezes:
-    """Which channels of a controller have frozen.
+    """Which channels of a controller have frozen."""
 
-    Parameters
-    ----------
-    range_deg : float
-        That the robot's sensor is calibrated for.
-    late_s : float
-        From a command to the frame that shows it.
-    period_s : float
-        Between steps.
-    """
-
-    def __init__(self, *, range_deg: float, late_s: float, period_s: float) -> None:
-        self._period, self._far = period_s, TRAVEL_PART * range_deg
-        self._travel = deque([0.0], maxlen=math.ceil(late_s / period_s) + 1)
-        self._low = self._high = 0.0
+    def __init__(self) -> None:
         self._human, self._robot = Repeats(), Repeats()
 
-    def step(self, time: float, human: float | None, robot: float | None, command: float) -> tuple[str, str]:
+    def step(self, time: float, human: float | None, robot: float | None) -> tuple[str, str]:
         """Why the human's reading must not be used and why the robot's, empty where they may; without a new frame a reading is None."""
-        self._travel.append(self._travel[-1] + command * self._period)
-        shown = self._travel[0]
         for each, reading in ((self._human, human), (self._robot, robot)):
             if reading is not None:
                 each.see(time, reading)
-        if robot is not None and not self._robot.repeats:
-            self._low = self._high = shown
-        self._low, self._high = min(self._low, shown), max(self._high, shown)
         if self._both:
             return (f"{_repeated(self._human)}, and from the same frame on as the robot's: both are frozen",) * 2
-        ours = f"{_repeated(self._human)}, and was noisy before: it is frozen" if self._human.frozen else ""
-        if self._robot.frozen:
-            return ours, f"{_repeated(self._robot)}, and was noisy before: it is frozen"
-        if self._robot.lasts_s >= FROZEN_S and self._high - self._low > self._far:
-            told = f"while the joint was told to go {self._high - self._low:.0f} degrees"
-            return ours, f"{_repeated(self._robot)} {told}: it is frozen, or the joint is stuck"
-        return ours, ""
+        noisy = "and was noisy before: it is frozen"
+        human_told, robot_told = (f"{_repeated(each)}, {noisy}" if each.frozen else "" for each in (self._human, self._robot))
+        return human_told, robot_told
 
     @property
     def _both(self) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import gc
 import time
 from collections.abc import Callable, Iterator
@@ -13,6 +14,7 @@ from numpy.typing import NDArray
 from calibration.control.controller import MAX_AGE_S, Command, JointController
 from calibration.control.protocols import Motion
 from calibration.finger.simulated import HUMAN, RATE_HZ, Finger, Plant, Reader
+from skinfab.errors import InputError
 from skinfab.readout.frame import Channel, Frame, Stream
 from skinfab.readout.source import HostClock, Source, StaleError
 
@@ -39,6 +41,8 @@ class Loop:
     passed_over : int
         Frames that were not answered as a newer one was there already.
     commands : tuple of Command
+    fault : str
+        Why commands could not be sent any more, which ended the loop; else empty.
     """
 
     time: FloatArray
@@ -47,6 +51,7 @@ class Loop:
     latency_s: FloatArray
     passed_over: int
     commands: tuple[Command, ...]
+    fault: str
 
     @property
     def jitter_s(self) -> FloatArray:
@@ -65,7 +70,7 @@ def run_loop(source: Source, controller: JointController, send: Callable[[float]
         Open. Its frames hold both sensors.
     controller : JointController
     send : callable
-        Takes a speed, deg/s. At the end, whatever the reason, it is sent 0.
+        Takes a speed, deg/s. At the end, whatever the reason, it is sent 0. Where it raises `InputError`, the loop ends.
     seconds : float
 
     Raises
@@ -76,7 +81,7 @@ def run_loop(source: Source, controller: JointController, send: Callable[[float]
     clock = HostClock()
     rows: list[tuple[float, int, float]] = []
     commands: list[Command] = []
-    passed, last = 0, -1
+    passed, last, fault = 0, -1, ""
     # All that there is by now stays: the collector need not walk it in the midst of the loop, which takes it 50 ms.
     gc.collect()
     gc.freeze()
@@ -88,7 +93,11 @@ def run_loop(source: Source, controller: JointController, send: Callable[[float]
             frame = _newest(source, PATIENCE * controller.period_s)
             now = clock.now()
             command = controller.step(now, frame, frame)
-            send(command.speed)
+            try:
+                send(command.speed)
+            except InputError as error:
+                fault = str(error)
+                break
             if frame is not None:
                 passed += max(frame.sequence - last - 1, 0) if last >= 0 else 0
                 last = frame.sequence
@@ -96,12 +105,24 @@ def run_loop(source: Source, controller: JointController, send: Callable[[float]
             rows.append((time.monotonic(), -1 if frame is None else frame.sequence, late))
             commands.append(command)
     finally:
-        send(0.0)
         gc.unfreeze()
+        _stop(send, tried=bool(fault))
     sent = np.array([row[0] for row in rows])
     return Loop(
-        sent - began, sent, np.array([row[1] for row in rows], dtype=np.int64), np.array([row[2] for row in rows]), passed, tuple(commands)
+        sent - began,
+        sent,
+        np.array([row[1] for row in rows], dtype=np.int64),
+        np.array([row[2] for row in rows]),
+        passed,
+        tuple(commands),
+        fault,
     )
+
+
+def _stop(send: Callable[[float], None], *, tried: bool) -> None:
+    """Tell the joint to stop; who took no command before may not take this one either, and that is told already."""
+    with contextlib.suppress(InputError) if tried else contextlib.nullcontext():
+        send(0.0)
 
 
 def _newest(source: Source, timeout: float) -> Frame | None:

@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 #: So many stops are told one by one.
 _TOLD = 5
+#: For so long a command may wait until the hand's port takes it, s: no longer than the joint goes on without a good frame.
+WRITE_S = 0.05
 
 
 def run_port(args: argparse.Namespace, human: Input, robot: Input) -> int:
@@ -47,9 +49,12 @@ def run_port(args: argparse.Namespace, human: Input, robot: Input) -> int:
         counts, gone = port.counts, outages(port, began, time.time())
     result = facts(args, loop, margin, simulated=stream.simulated)
     seen = _idle_notes(loop)
-    result |= {"rate_hz": rate, "real_time": granted, "outages": gone, "notes": [*told, *seen]}
+    result |= {"rate_hz": rate, "real_time": granted, "outages": gone, "notes": [*told, *seen], "fault": loop.fault}
     result["counts"] = {"lost": counts.lost, "bad": counts.bad, "late": counts.late, "reopened": counts.reopened}
     _write(args, loop, result)
+    if loop.fault:
+        steps.say(outage_notes(args.port, gone) + seen)
+        raise InputError(f"{loop.fault} (what went on until then is in {args.output})")
     if args.json:
         print(json.dumps(result, allow_nan=False))
         return 0
@@ -88,7 +93,7 @@ def _idle_notes(loop: Loop) -> list[str]:
     """When the joint was not driven by what was read, and why: each stop, and how often a command was held."""
     spans: list[tuple[int, int]] = []
     for k, command in enumerate(loop.commands):
-        if command.state != "run":
+        if command.state in ("hold", "stop"):
             spans = [*spans[:-1], (spans[-1][0], k)] if spans and spans[-1][1] == k - 1 else [*spans, (k, k)]
     stops = [(first, last) for first, last in spans if loop.commands[last].state == "stop"]
     notes = [
@@ -98,6 +103,12 @@ def _idle_notes(loop: Loop) -> list[str]:
     ]
     if len(stops) > _TOLD:
         notes.append(f"the joint was stopped {len(stops) - _TOLD} times more; control.csv says why")
+    shut = [k for k, command in enumerate(loop.commands) if command.state == "block"]
+    if shut:
+        notes.append(
+            f"from {loop.time[shut[0]]:.2f} s to {loop.time[shut[-1]]:.2f} s the joint was not driven on in {len(shut)} of "
+            f"{shut[-1] - shut[0] + 1} commands: {loop.commands[shut[0]].reason}"
+        )
     if held := [first for first, last in spans if loop.commands[last].state == "hold"]:
         first = held[0]
         times = "once" if len(held) == 1 else f"{len(held)} times, first"
@@ -120,13 +131,15 @@ def _commands(port: str | None) -> Iterator[Callable[[float], None]]:
     import serial
 
     try:
-        device = serial.Serial(port, write_timeout=0.05)
+        device = serial.Serial(port, write_timeout=WRITE_S)
     except (OSError, ValueError) as fault:
         raise InputError(f"{port}: {fault}; give the port of the robot's hand") from fault
 
     def send(speed: float) -> None:
         try:
             device.write(f"{speed:.3f}\n".encode())
+        except serial.SerialTimeoutException as fault:
+            raise InputError(f"{port}: the hand read no command for {WRITE_S:g} s; is it on, and does its program run?") from fault
         except OSError as fault:
             raise InputError(f"{port} takes no commands any more ({fault}); is it still plugged in?") from fault
 

@@ -1,5 +1,6 @@
 """`skinfab control`: simulator, log and port; what is refused, and the ways in which it is used wrongly."""
 
+import contextlib
 import csv
 import json
 import os
@@ -280,6 +281,38 @@ def test_a_broken_wire_is_told_and_what_was_out_of_range_too(
     assert said.removeprefix("note: ") in result["notes"] and 0.02 < result["held_or_stopped"] < 0.9
     assert set(result["outside_of"]) == {"human", "target", "robot"}
     assert f"out of range {100 * result['outside']:.0f} %" in printed.out
+
+
+@pytest.mark.parametrize("gone", [True, False], ids=["gone", "deaf"])
+def test_a_hand_that_is_gone_or_deaf_costs_no_record(
+    calibrations: dict[str, str], tmp_path: Path, capsys: pytest.CaptureFixture[str], gone: bool
+) -> None:
+    """The port of the commands closes, or nobody reads them: said of that port, with all that went on until then."""
+    master, slave = pty.openpty()
+    tty.setraw(slave)
+    if not gone:  # as full as it gets
+        os.set_blocking(slave, False)
+        with contextlib.suppress(BlockingIOError):
+            while True:
+                os.write(slave, bytes(1024))
+    closing = threading.Timer(3.0, os.close, [master])
+    name = os.ttyname(slave)
+    words = ["--human", calibrations["human_branches"], "--robot", calibrations["robot_branches"], "--commands", name]
+    try:
+        with Lines(lambda human, robot: (human, robot)) as board:
+            if gone:
+                closing.start()
+            assert main(["control", "--port", board.path, *words, "--seconds", "6", "-o", str(tmp_path)]) == 1
+    finally:
+        closing.join() if gone else os.close(master)
+        os.close(slave)
+    said = capsys.readouterr().err
+    assert f"{name} takes no commands any more" in said if gone else f"{name}: the hand read no command for 0.05 s" in said
+    assert f"what went on until then is in {tmp_path}" in said
+    result = json.loads((tmp_path / "control.json").read_text())
+    assert name in result["fault"] and (tmp_path / "control.png").is_file()
+    rows = (tmp_path / "control.csv").read_text().splitlines()
+    assert len(rows) == result["commands"] + 1 and (result["commands"] > 50) == gone
 
 
 def test_an_interrupted_run_leaves_the_one_before_as_it_was(

@@ -85,11 +85,12 @@ def test_a_curve_that_turns_has_two_angles_for_a_reading() -> None:
 
 @pytest.fixture
 def credulous(monkeypatch: pytest.MonkeyPatch) -> Callable[[], None]:
-    """From its call on every reading that is a number is believed, and repeated for ever."""
+    """From its call on every reading that is a number is believed, however it repeats and whatever the joint is told meanwhile."""
 
     def believe() -> None:
         monkeypatch.setattr("calibration.control.controller.FAR_SPANS", np.inf)
         monkeypatch.setattr("calibration.control.frozen.FROZEN_S", np.inf)
+        monkeypatch.setattr("calibration.control.follows.FAR_PART", np.inf)
 
     return believe
 
@@ -142,14 +143,19 @@ def test_a_loose_wire_reads_as_a_rail(plain: tuple[Input, Input], credulous: Cal
 
 
 def driven(
-    inputs: tuple[Input, Input], fault: Callable[[float, float, float], tuple[float, float]], *, sensors: tuple[FingerSensor, ...]
+    inputs: tuple[Input, Input],
+    fault: Callable[[float, float, float], tuple[float, float]],
+    *,
+    sensors: tuple[FingerSensor, ...],
+    until: float = 8.0,
 ) -> tuple[np.ndarray, np.ndarray, list[Command]]:
-    """The human's angles, the robot's and the commands of 8 s of 45 + 25 sin(t) degrees; `fault` makes readings of time and readings."""
+    """The human's angles, the robot's and the commands of 8 s of 45 + 25 sin(t) degrees, still from `until` on; `fault` makes readings of
+    time and readings."""
     controller, finger = JointController(*inputs, law="full", gain=3.99), Finger(Plant(sensor=sensors[1]), seed=0, angle=45.0)
     reader, speed, rows, commands = Reader(sensors[0], 0.05, np.random.default_rng(1)), 0.0, [], []
     for k in range(round(8 * RATE_HZ)):
         time = k / RATE_HZ
-        angle = 45 + 25 * np.sin(time)
+        angle = 45 + 25 * np.sin(min(time, until))
         frames = (reader.read(time, angle), finger.step(time, speed))
         values = fault(time, *(float(frame.values[0]) for frame in frames))
         human, robot = (replace(frame, values=np.array([value])) for frame, value in zip(frames, values, strict=True))
@@ -214,8 +220,63 @@ def test_frozen_readings_are_not_followed(branches: tuple[Input, Input], credulo
     assert commands[-1].state == "run"
 
 
+def told_deg(commands: list[Command], since: int) -> float:
+    """Between which the joint was told to be, from a frame on, deg."""
+    return float(np.ptp(np.cumsum([command.speed for command in commands[since:]])) / RATE_HZ)
+
+
+@pytest.mark.parametrize("noise", [1.0, 0.0])
+def test_a_joint_that_does_not_move_is_pushed_for_ever(branches: tuple[Input, Input], credulous: Callable[[], None], noise: float) -> None:
+    """At 50 degrees, while the human's goes to 70 and stays there: the error stays, and so does the command."""
+    sensors = (HUMAN, replace(ROBOT, noise=noise * ROBOT.noise))
+    stays = {"human": lambda time: 45 + 25 * np.sin(min(time, 0.5 * np.pi)), "wall": lambda time: 50.0}
+    _, commands = blocked(branches, sensors=sensors, seconds=8, **stays)
+    assert told_deg(commands, 0) < 80 and {command.state for command in commands[-100:]} >= {"block"}
+    assert "robot_V shows nothing of it" in next(command for command in commands if command.state == "block").reason
+    credulous()
+    _, commands = blocked(branches, sensors=sensors, seconds=8, **stays)
+    assert told_deg(commands, 0) > 200 and commands[-1].state == "run"
+
+
+def blocked(
+    inputs: tuple[Input, Input],
+    *,
+    human: Callable[[float], float],
+    wall: Callable[[float], float],
+    seconds: float,
+    sensors: tuple[FingerSensor, ...] = (HUMAN, ROBOT),
+    law: Law = "full",
+) -> tuple[np.ndarray, list[Command]]:
+    """The robot's angle and the commands, where something stands in its way at an angle that is a function of time."""
+    controller, reader = JointController(*inputs, law=law, gain=3.99), Reader(sensors[0], 0.05, np.random.default_rng(1))
+    finger, speed, went, commands = Finger(Plant(sensor=sensors[1]), seed=0, angle=min(45.0, wall(0.0))), 0.0, [], []
+    for k in range(round(seconds * RATE_HZ)):
+        time = k / RATE_HZ
+        finger.plant = replace(finger.plant, high=wall(time))
+        commands.append(controller.step(time, reader.read(time, human(time)), finger.step(time, speed)))
+        speed = commands[-1].speed
+        went.append(finger.angle)
+    return np.array(went), commands
+
+
+@pytest.mark.parametrize("noise", [1.0, 0.0])
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize(("top", "wall"), [(70.0, 50.0), (90.0, 95.0)], ids=["grasp", "stop"])
+def test_who_held_something_can_let_it_go(branches: tuple[Input, Input], law: Law, noise: float, top: float, wall: float) -> None:
+    """A grasp at 50 degrees, and a human beyond the range for ten seconds: blocked that way, and at once free the other way."""
+    sensors = tuple(replace(sensor, noise=noise * sensor.noise) for sensor in (HUMAN, ROBOT))
+
+    def human(time: float) -> float:
+        return 45 + (top - 45) * min(time, 1.0) if time < 11 else max(top - 30 * (time - 11), 20.0)
+
+    went, commands = blocked(branches, human=human, wall=lambda time: wall, seconds=18, sensors=sensors, law=law)
+    assert "stop" not in {command.state for command in commands}
+    assert went[1090] > wall - 20 and abs(went[-200:].mean() - 20) < 14
+    assert {command.state for command in commands[-400:]} == {"run"}
+
+
 def test_a_frozen_reading_of_the_robots_alone(branches: tuple[Input, Input], credulous: Callable[[], None]) -> None:
-    """Without noise of its own: told to go further than slack is wide, a joint's reading changes."""
+    """Without noise of its own it might be a joint at rest, were that not told to go further than slack is wide."""
     last = [np.nan]
 
     def freeze(time: float, human: float, robot: float) -> tuple[float, float]:
@@ -223,12 +284,24 @@ def test_a_frozen_reading_of_the_robots_alone(branches: tuple[Input, Input], cre
         return human, last[0]
 
     silent = (HUMAN, replace(ROBOT, noise=0.0))
-    _, _, commands = driven(branches, freeze, sensors=silent)
-    stopped = [command for command in commands if command.state == "stop"]
-    assert "robot_V read the same" in stopped[0].reason and "it is frozen, or the joint is stuck" in stopped[0].reason
+    _, _, commands = driven(branches, freeze, sensors=silent, until=4.5)
+    assert "block" in {command.state for command in commands} and told_deg(commands, 300) < 120
     credulous()
-    _, went, commands = driven(branches, freeze, sensors=silent)
-    assert commands[-1].state == "run" and not 1 < went[300:].min() < went[300:].max() < 94
+    _, went, commands = driven(branches, freeze, sensors=silent, until=4.5)
+    assert told_deg(commands, 300) > 200 and not 1 < went[300:].min() < went[300:].max() < 94
+
+
+def test_a_wire_that_hums_shows_no_joint(branches: tuple[Input, Input], credulous: Callable[[], None]) -> None:
+    """A robot's channel that hangs in the air, in the midst of its range: 50 Hz, which no joint makes, and never the same."""
+
+    def hum(time: float, human: float, robot: float) -> tuple[float, float]:
+        return human, 2.08 + 0.02 * np.sin(997 * time) if time >= 1.0 else robot
+
+    _, _, commands = driven(branches, hum, sensors=(HUMAN, ROBOT), until=4.5)
+    assert {"block"} <= {command.state for command in commands} and told_deg(commands, 100) < 140
+    credulous()
+    _, _, commands = driven(branches, hum, sensors=(HUMAN, ROBOT), until=4.5)
+    assert told_deg(commands, 100) > 200
 
 
 @pytest.mark.parametrize("step_V", [1e-6, 1e-3, 5e-3])

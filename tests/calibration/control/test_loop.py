@@ -10,6 +10,7 @@ from calibration.control.loop import FingerBoard, Loop, run_loop
 from calibration.control.protocols import Motion, uniform
 from calibration.finger.logs import calibrated
 from calibration.finger.simulated import HUMAN, ROBOT, Plant
+from skinfab.errors import InputError
 from skinfab.readout.paced import PacedFrames
 from skinfab.readout.pty_server import PtyServer
 from skinfab.readout.serial_port import SerialPort
@@ -68,6 +69,21 @@ def test_the_first_command_is_no_jump(inputs: tuple[Input, Input]) -> None:
     assert loop.commands[first].clamped and (np.abs(sent[:-1]) <= RESUME_DEG_S2 * (since + 0.03))[first:].all() and max(sent) > 50
 
 
+def test_a_hand_that_takes_no_more_commands_ends_it_and_the_record_stays(inputs: tuple[Input, Input]) -> None:
+    board = FingerBoard(uniform(length_s=1.0), seed=0)
+    sent: list[float] = []
+
+    def send(speed: float) -> None:
+        sent.append(speed)
+        if len(sent) >= 5:
+            raise InputError("it is gone")
+
+    with PacedFrames(board.stream, lambda: board) as source:
+        loop = run_loop(source, JointController(*inputs, gain=4.0), send, seconds=1.0)
+    assert loop.fault == "it is gone" and len(loop.commands) == len(loop.time) == 4
+    assert len(sent) == 6 and sent[-1] == 0.0  # a last try
+
+
 def test_whatever_happens_the_joint_is_stopped(inputs: tuple[Input, Input]) -> None:
     board = FingerBoard(uniform(length_s=1.0), seed=0)
     sent: list[float] = []
@@ -92,5 +108,5 @@ def test_a_late_reader_answers_the_newest_frame(inputs: tuple[Input, Input]) -> 
 
 def test_jitter_is_that_between_commands() -> None:
     sent = np.array([0.0, 0.01, 0.02, 0.035, 0.04])
-    loop = Loop(sent, sent, np.array([0, 1, 2, -1, 3]), np.zeros(5), 0, ())
+    loop = Loop(sent, sent, np.array([0, 1, 2, -1, 3]), np.zeros(5), 0, (), "")
     assert loop.jitter_s == pytest.approx([0.0, 0.0, 0.01])
