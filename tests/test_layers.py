@@ -23,7 +23,7 @@ FLOORS = (
     ("errors", "tolerances", "__init__"),
     ("files", "decimals", "linalg", "paths", "material", "progress", "staging", "archive", "spreadsheet"),
     ("mesh", "patterns", "electrical", "readout", "strip_fit", "strip_table"),
-    ("pieces", "flatten"),
+    ("pieces", "flatten", "fingertip"),
     ("seams", "placement", "skin"),  # edits of seams and sensors take a skin and give one
     (
         *("document", "mould", "mould_plan", "mould_taper", "strip_plate", "wiring", "wired", "wire_exits", "wire_ways", "wire_choice"),
