@@ -6,7 +6,7 @@ import errno
 import os
 import secrets
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from skinfab.errors import InputError
@@ -50,7 +50,8 @@ def atomic_path(target: str | Path) -> Iterator[Path]:
     except OSError as fault:
         raise InputError(explain_os_error(fault, target)) from fault
     finally:
-        partial.unlink(missing_ok=True)
+        with suppress(FileNotFoundError, NotADirectoryError):  # then it was never begun, and why is being told
+            partial.unlink()
 
 
 def atomic_write(target: str | Path, content: str | bytes) -> None:
@@ -121,8 +122,19 @@ def explain_os_error(fault: OSError, target: str | Path) -> str:
     """One sentence for a failed write: what, where, what to do."""
     if fault.errno == errno.ENOSPC:
         return f"cannot write {target}: the disk is full; free some space and run again"
-    if fault.errno == errno.ENOENT:
-        return f"cannot write {target}: its folder does not exist; create it first"
+    if fault.errno in (errno.ENOENT, errno.ENOTDIR):
+        return f"cannot write {target}: {_missing(fault, Path(target))}"
+    if fault.errno == errno.EISDIR:
+        return f"cannot write {target}: it is a folder; name a file in it"
     if fault.errno in (errno.EACCES, errno.EROFS, errno.EPERM):
         return f"cannot write {target}: no permission; choose another folder"
     return f"cannot write {target}: {fault.strerror or fault}"
+
+
+def _missing(fault: OSError, target: Path) -> str:
+    """Why there is no such place: a folder that is there may still take no files, as those do in which the system shows itself."""
+    folder = Path(fault.filename).parent if isinstance(fault.filename, str) else target.parent
+    if folder.is_dir():
+        return f"{folder} takes no new files; choose another folder"
+    file = next((p for p in folder.parents if p.is_file()), folder)
+    return f"{file} is a file, not a folder; choose another folder" if file.is_file() else "its folder does not exist; create it first"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 
 import numpy as np
@@ -18,7 +19,7 @@ from skinfab.skin import Skin
 ShowWay = Callable[[NDArray[np.float64] | None], None]
 
 
-class _Way(Tool):
+class _Way(Tool, ABC):
     """Two clicks or more: what is done along the cheapest way from each to the next."""
 
     def __init__(self, desk: Desk, show: ShowWay) -> None:
@@ -26,14 +27,14 @@ class _Way(Tool):
         self._last = -1
         self._ways: Ways | None = None
 
-    def along(self, skin: Skin, vertices: Sequence[int], ways: Ways) -> Skin:
-        """The skin with this done from the first vertex to the second."""
-        raise NotImplementedError
-
     @property
+    @abstractmethod
     def step(self) -> str:
         """What undo calls it."""
-        raise NotImplementedError
+
+    @abstractmethod
+    def along(self, skin: Skin, vertices: Sequence[int], ways: Ways) -> Skin:
+        """The skin with this done from the first vertex to the second."""
 
     @property
     def begun(self) -> bool:
@@ -118,7 +119,7 @@ class Forbid(_Way):
         self._desk.session.do("allow seams", edit.allow(skin, edit.chain(skin.mesh, skin.marks.forbidden, edge)))
 
 
-class _OnSeam(Tool):
+class _OnSeam(Tool, ABC):
     """One click on a seam."""
 
     def __init__(self, desk: Desk) -> None:
@@ -131,9 +132,9 @@ class _OnSeam(Tool):
             return
         self._desk.guarded("seams", lambda: self._do(skin, edge))
 
+    @abstractmethod
     def on(self, skin: Skin, edge: int) -> tuple[str, Skin]:
         """What undo calls it, and the skin with it done."""
-        raise NotImplementedError
 
     def _do(self, skin: Skin, edge: int) -> None:
         label, changed = self.on(skin, edge)

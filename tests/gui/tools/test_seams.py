@@ -5,6 +5,8 @@ import itertools
 import pytest
 from person import MESHES
 
+from gui.tools import seams as seam_tools
+
 #: A way over the cube's eight corners along its sides: cut there, it opens into one flat piece.
 ROUND = (0, 1, 3, 2, 6, 7, 5, 4)
 
@@ -165,3 +167,9 @@ def test_the_flat_view_takes_clicks_on_seams_too(cube):
         assert cube.session.undo_label == label
     assert cube.problems() == []
     cube.wait()
+
+
+@pytest.mark.parametrize("base", [seam_tools._Way, seam_tools._OnSeam])
+def test_a_tool_that_does_not_say_what_it_does_is_none(base):
+    with pytest.raises(TypeError, match="abstract"):
+        type("Half", (base,), {"id": "half"})(None)
