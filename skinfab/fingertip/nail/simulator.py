@@ -1,0 +1,301 @@
+"""Simulated participants who touch the paper's patterns, and what the six channels of the sensor on their nail read.
+
+A participant is a `Finger` drawn about one set of means; a touch is a pattern with the scatter of a hand that aims at it. Readings are
+the finger's answer at the drive and at its second harmonic, with gravity, noise, and the ends of the sensor's ranges.
+
+What it leaves out: the pulp is a row of linear springs that does not slide, stick, creep or lift off; the finger is one rigid body, so
+that the joint behind it only holds it; the motor turns evenly and does not feel the load; nothing changes while a touch lasts; and
+means and scatter are assumed, chosen so that the accuracies of the published method come near the paper's. It is enough for what is
+compared here, methods that read the same touches, and says nothing of how a real finger's accuracy comes about.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from skinfab.errors import InputError
+from skinfab.fingertip.nail.finger import EDGE_POINTS, ComplexArray, Finger, contact_matrix, motor_force, respond
+from skinfab.fingertip.nail.patterns import Pattern
+from skinfab.readout.frame import Channel, Frame, Recording, Stream
+from skinfab.readout.paced import PacedFrames
+
+FloatArray = NDArray[np.float64]
+
+#: The paper's: about 1.4 kHz, and 1024 readings an estimate.
+RATE_HZ = 1400.0
+WINDOW = 1024
+CHANNELS = ("Ax", "Ay", "Az", "Gx", "Gy", "Gz")
+#: The paper's 100 g.
+FORCE_N = 0.98
+
+#: The pad lies so far below the middle of the body.
+_PAD_MM = -6.0
+#: Pressure along what is touched falls off with the pad's curvature, across and along the finger: exp(-(x/a)^2 - (y/b)^2).
+_PAD_HALF_MM = np.array([8.0, 12.0])
+_EDGE_LENGTH_MM = 20.0
+#: Hertz: a contact's stiffness grows with the cube root of the force.
+_HERTZ = 1 / 3
+
+
+@dataclass(frozen=True)
+class Scene:
+    """Means and scatter; standard deviations where not said otherwise.
+
+    Parameters
+    ----------
+    drive_hz : float
+        The motor's frequency.
+    drive_scatter : float
+        Of it from touch to touch, as a part.
+    harmonic : float
+        Force at twice the drive, as a part of that at the drive.
+    place_mm : float
+        How far off the middle of the pattern the finger comes down, across and along.
+    turn_rad : float
+        How much it is turned.
+    force_scatter : float
+        As a part of the wanted force.
+    person_scatter : float
+        Of mass, inertia and stiffnesses among participants, as a part (log-normal).
+    posture_scatter : float
+        Of the stiffness that holds the finger, from touch to touch, as a part (log-normal).
+    lean_rad : float
+        Of the finger against the vertical from touch to touch: what gravity is in each channel.
+    noise_g, noise_dps : float
+        Of each reading.
+    range_g, range_dps : float
+        The sensor reads from minus to plus this.
+    """
+
+    drive_hz: float = 169.0
+    drive_scatter: float = 0.004
+    harmonic: float = 0.06
+    place_mm: float = 1.2
+    turn_rad: float = math.radians(18)
+    force_scatter: float = 0.10
+    person_scatter: float = 0.15
+    posture_scatter: float = 0.0
+    lean_rad: float = 0.1
+    noise_g: float = 0.05
+    noise_dps: float = 6.0
+    range_g: float = 4.0
+    range_dps: float = 500.0
+
+
+@dataclass(frozen=True, eq=False)
+class Touch:
+    """A finger on a pattern, or held still in the air.
+
+    Parameters
+    ----------
+    pattern : Pattern or None
+        What is aimed at; None for nothing.
+    x_mm, y_mm : float
+        Where the pattern's middle lies on the pad.
+    angle_rad : float
+        Of an edge, as it lies on the pad; NaN otherwise.
+    force_n : float
+        0 in the air.
+    drive_hz : float
+        The motor's frequency meanwhile.
+    posture : (6,) float
+        The finger's stiffnesses are multiplied by these.
+    gravity_g : (3,) float
+        Along x, y and z.
+    """
+
+    pattern: Pattern | None
+    x_mm: float
+    y_mm: float
+    angle_rad: float
+    force_n: float
+    drive_hz: float
+    posture: FloatArray
+    gravity_g: FloatArray
+
+
+def participant(rng: np.random.Generator, scene: Scene | None = None) -> Finger:
+    """A finger drawn about the means."""
+    scatter = (scene or Scene()).person_scatter
+
+    def drawn(mean: ArrayLike) -> FloatArray:
+        means = np.asarray(mean, dtype=float)
+        return np.asarray(means * np.exp(scatter * rng.standard_normal(means.shape)))
+
+    mass = float(drawn(6e-3))
+    inertia = drawn([3.5e-7, 1.5e-7, 3.5e-7])
+    held_hz = np.concatenate([drawn([90.0, 70.0, 110.0]), drawn([110.0, 150.0, 120.0])])
+    return Finger(
+        mass_kg=mass,
+        inertia_kgm2=inertia,
+        stiffness=np.append(np.full(3, mass), inertia) * (2 * math.pi * held_hz) ** 2,
+        damping_ratio=float(drawn(0.25)),
+        contact_n_per_m=float(drawn(2500.0)),
+        contact_delay_s=2.5e-4,
+        motor_mm=np.array([0.0, -2.0, 6.0]) + 0.3 * rng.standard_normal(3),
+        imu_mm=np.array([0.0, 5.0, 6.0]) + 0.3 * rng.standard_normal(3),
+        imbalance_kgm=float(drawn(3.25e-8)),
+        tilt=0.08 * rng.standard_normal(2),
+    )
+
+
+def touch(pattern: Pattern | None, rng: np.random.Generator, scene: Scene | None = None) -> Touch:
+    """Aim at a pattern once; with None, hold the finger in the air."""
+    scene = scene or Scene()
+    off = scene.place_mm * rng.standard_normal(2)
+    turned = scene.turn_rad * float(rng.standard_normal())
+    # Beyond these the paper's participants tried again.
+    force = FORCE_N * float(np.clip(1 + scene.force_scatter * rng.standard_normal(), 0.8, 1.2))
+    drive = scene.drive_hz * (1 + scene.drive_scatter * float(rng.standard_normal()))
+    posture = np.exp(scene.posture_scatter * rng.standard_normal(6))
+    gravity = np.append(np.sin(scene.lean_rad * rng.standard_normal(2)), 1.0)
+    gravity /= np.linalg.norm(gravity)
+    if pattern is None:
+        return Touch(None, math.nan, math.nan, math.nan, 0.0, drive, posture, gravity)
+    x, y = pattern.x_mm + float(off[0]), pattern.y_mm + float(off[1])
+    return Touch(pattern, x, y, pattern.angle_rad + turned, force, drive, posture, gravity)
+
+
+def phasors(finger: Finger, touches: Sequence[Touch], *, harmonic: float = Scene.harmonic) -> ComplexArray:
+    """The finger's answers at the drive and at twice the drive.
+
+    Parameters
+    ----------
+    finger : Finger
+    touches : sequence of n Touch
+    harmonic : float
+        Force at twice the drive, as a part of that at the drive.
+
+    Returns
+    -------
+    (n, 2, 6) complex
+        G and deg/s; see `respond`.
+    """
+    contact = contact_matrix(*_touched(touches))
+    stiffened = np.array([(each.force_n / FORCE_N) ** _HERTZ for each in touches])
+    posture = np.array([each.posture for each in touches])
+    omega = 2 * math.pi * np.array([each.drive_hz for each in touches])
+    force = motor_force(finger, omega)
+    answers = [respond(finger, contact, stiffened, k * omega, part * force, posture) for k, part in ((1, 1.0), (2, harmonic))]
+    return np.stack(answers, axis=1)
+
+
+def _touched(touches: Sequence[Touch]) -> tuple[FloatArray, FloatArray]:
+    """Points of the pad that are touched, (n, k, 3) mm, and how much of the contact is at each, (n, k)."""
+    middle = np.array([(0.0, 0.0) if each.pattern is None else (each.x_mm, each.y_mm) for each in touches])
+    is_line = np.array([each.pattern is not None and not each.pattern.is_pin for each in touches])
+    angle = np.where(is_line, [each.angle_rad for each in touches], 0.0)
+    along = np.linspace(-0.5, 0.5, EDGE_POINTS) * _EDGE_LENGTH_MM * is_line[:, None]
+    flat = middle[:, None] + along[..., None] * np.stack([np.cos(angle), np.sin(angle)], axis=-1)[:, None]
+    weights = np.exp(-((flat / _PAD_HALF_MM) ** 2).sum(axis=-1))
+    weights /= weights.sum(axis=1, keepdims=True)
+    weights[[each.pattern is None for each in touches]] = 0.0
+    return np.concatenate([flat, np.full((*flat.shape[:2], 1), _PAD_MM)], axis=-1), weights
+
+
+def nail_stream(scene: Scene | None = None) -> Stream:
+    """What the simulator sends: six channels at 1.4 kHz.
+
+    Examples
+    --------
+    >>> stream = nail_stream()
+    >>> stream.names, stream.rate_hz, stream.simulated
+    (('Ax', 'Ay', 'Az', 'Gx', 'Gy', 'Gz'), 1400.0, True)
+    """
+    scene = scene or Scene()
+    units = (("G", "acceleration", scene.range_g),) * 3 + (("deg/s", "angular velocity", scene.range_dps),) * 3
+    channels = (Channel(name, unit, kind, -end, end) for name, (unit, kind, end) in zip(CHANNELS, units, strict=True))
+    return Stream("simulated nail", tuple(channels), RATE_HZ, simulated=True)
+
+
+def readings(
+    finger: Finger,
+    touches: Sequence[Touch],
+    rng: np.random.Generator,
+    *,
+    samples: int = WINDOW,
+    scene: Scene | None = None,
+    drift_hz_per_s: float = 0.0,
+) -> FloatArray:
+    """What the sensor reads of each touch, (n, samples, 6) in G and deg/s; the motor's phase at the first sample is any.
+
+    Parameters
+    ----------
+    drift_hz_per_s : float
+        How fast the motor changes its speed; the finger's answer is taken at the speed it began with.
+    """
+    scene = scene or Scene()
+    if samples < 1:
+        raise InputError(f"{samples} readings of a touch are none; ask for one or more")
+    z = phasors(finger, touches, harmonic=scene.harmonic)
+    time = np.arange(samples) / RATE_HZ
+    drive = np.array([each.drive_hz for each in touches])[:, None]
+    cycles = rng.uniform(size=(len(touches), 1)) + drive * time + drift_hz_per_s * time**2 / 2
+    turn = np.exp(2j * math.pi * cycles)[..., None]
+    out = (z[:, None, 0] * turn + z[:, None, 1] * turn**2).real
+    out[..., :3] += np.array([each.gravity_g for each in touches])[:, None]
+    out += np.repeat([scene.noise_g, scene.noise_dps], 3) * rng.standard_normal(out.shape)
+    ends = np.repeat([scene.range_g, scene.range_dps], 3)
+    clipped: FloatArray = np.clip(out, -ends, ends)
+    return clipped
+
+
+def record(
+    finger: Finger, touches: Sequence[Touch], rng: np.random.Generator, *, samples: int = WINDOW, scene: Scene | None = None
+) -> list[Recording]:
+    """As `readings`, a recording each.
+
+    Examples
+    --------
+    >>> from skinfab.fingertip.nail.patterns import EDGES4
+    >>> rng = np.random.default_rng(0)
+    >>> finger = participant(rng)
+    >>> made = record(finger, [touch(EDGES4[0], rng), touch(None, rng)], rng)
+    >>> len(made), made[0].values.shape
+    (2, (1024, 6))
+    """
+    stream = nail_stream(scene)
+    time = np.arange(samples) / RATE_HZ
+    values = readings(finger, touches, rng, samples=samples, scene=scene)
+    return [Recording.of_values(stream, each, device_time=time) for each in values]
+
+
+def nail_frames(
+    finger: Finger, patterns: Sequence[Pattern | None], *, hold_s: float = 2.0, seed: int = 0, scene: Scene | None = None
+) -> Iterator[Frame]:
+    """Frames without end: the patterns one after the other, each held for `hold_s`, and again from the first on."""
+    rng = np.random.default_rng(seed)
+    stream, samples = nail_stream(scene), round(hold_s * RATE_HZ)
+    k = 0
+    for pattern in itertools.cycle(patterns):
+        for values in readings(finger, [touch(pattern, rng, scene)], rng, samples=samples, scene=scene)[0]:
+            time = k / RATE_HZ
+            yield Frame(time, time, k, values, np.ones(len(values), dtype=bool), stream.saturated(values))
+            k += 1
+
+
+def simulated_nail(
+    finger: Finger,
+    patterns: Sequence[Pattern | None],
+    *,
+    hold_s: float = 2.0,
+    seed: int = 0,
+    scene: Scene | None = None,
+    in_time: bool = True,
+) -> PacedFrames:
+    """The simulator as a source.
+
+    Examples
+    --------
+    >>> with simulated_nail(participant(np.random.default_rng(0)), [None], in_time=False) as source:
+    ...     frame = source.read()
+    >>> frame.values.shape, source.stream.simulated
+    ((6,), True)
+    """
+    return PacedFrames(nail_stream(scene), lambda: nail_frames(finger, patterns, hold_s=hold_s, seed=seed, scene=scene), in_time=in_time)
