@@ -81,6 +81,8 @@ class Archive:
     Parameters
     ----------
     path : Path
+    head, what : str
+        The JSON member that says what shape the arrays have, and what such an archive is called: for messages.
 
     Raises
     ------
@@ -90,7 +92,8 @@ class Archive:
         Not a zip, or cut short.
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, *, head: str = "skin.json", what: str = "a skin document") -> None:
+        self._head, self._what = head, what
         self._size = path.stat().st_size
         try:
             self._zip = zipfile.ZipFile(path)
@@ -141,7 +144,7 @@ class Archive:
                 raise InputError(f"{name}.npy is said to have shape {shape}; no size can be negative")
             count *= n
         raw = self._read(f"{name}.npy", at_most=8 * count + 1024)
-        start = _data_start(raw, f"{name}.npy", dtype, shape)
+        start = _data_start(raw, f"{name}.npy", dtype, shape, head=self._head)
         if len(raw) - start != 8 * count:
             raise InputError(f"{name}.npy has {len(raw) - start} bytes of data where shape {shape} needs {8 * count}")
         array = np.frombuffer(raw, dtype=dtype, offset=start).reshape(shape).astype(dtype[1:], copy=True)
@@ -152,7 +155,7 @@ class Archive:
     def _read(self, name: str, *, at_most: int) -> bytes:
         info = self._members.get(name)
         if info is None:
-            raise InputError(f"{name} is missing; not a skin document")
+            raise InputError(f"{name} is missing; not {self._what}")
         if info.file_size > at_most:
             raise InputError(f"{name} has {info.file_size:,} bytes where at most {at_most:,} can be right")
         if info.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
@@ -167,7 +170,7 @@ class Archive:
             raise zipfile.BadZipFile(f"{name} is damaged: {fault}") from fault
 
 
-def _data_start(raw: bytes, name: str, dtype: str, shape: tuple[int, ...]) -> int:
+def _data_start(raw: bytes, name: str, dtype: str, shape: tuple[int, ...], *, head: str) -> int:
     """Where the data begin in a ``.npy`` file, once its header says exactly what is wanted.
 
     NumPy's own reader evaluates the header as a Python literal and believes its shape; deep brackets,
@@ -188,7 +191,7 @@ def _data_start(raw: bytes, name: str, dtype: str, shape: tuple[int, ...]) -> in
         )
     given = tuple(int(n) for n in match["shape"].replace(" ", "").split(",") if n)
     if given != shape:
-        raise InputError(f"{name} has shape {given}; skin.json says {shape}")
+        raise InputError(f"{name} has shape {given}; {head} says {shape}")
     return start
 
 

@@ -7,18 +7,14 @@ is one that is right at best and one that is wrong, and one that is forgotten af
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
 from calibration.contact.detector import Contact
+from skinfab.rates import Rate
 
 #: Two contacts are the same from this intersection over union on.
 SAME = 0.5
-#: Draws of a bootstrap.
-DRAWS = 2000
 
 
 @dataclass(frozen=True)
@@ -46,18 +42,6 @@ class Score:
     minutes: float
     start_errors: tuple[float, ...]
     end_errors: tuple[float, ...]
-
-
-@dataclass(frozen=True)
-class Rate:
-    """A part of a whole, and the ends of its 95 % confidence interval."""
-
-    value: float
-    low: float
-    high: float
-
-    def __str__(self) -> str:
-        return f"{self.value:.3f} [{self.low:.3f}, {self.high:.3f}]"
 
 
 def score(found: Sequence[Contact], truth: Sequence[Contact], *, end: float, start: float = 0.0) -> Score:
@@ -104,42 +88,6 @@ def score(found: Sequence[Contact], truth: Sequence[Contact], *, end: float, sta
         tuple(made[i][1] - were[j][1] for i, j in right),
         tuple(made[i][2] - were[j][2] for i, j in right),
     )
-
-
-def wilson(right: int, of: int) -> Rate:
-    """A rate of independent cases with Wilson's interval; nothing known where there is no case.
-
-    Examples
-    --------
-    >>> print(wilson(98, 100))
-    0.980 [0.930, 0.994]
-    """
-    if not of:
-        return Rate(math.nan, 0.0, 1.0)
-    z = 1.959963984540054
-    part, square = right / of, z * z / of
-    middle, half = part + square / 2, z * math.sqrt(part * (1 - part) / of + square / (4 * of))
-    return Rate(part, max((middle - half) / (1 + square), 0.0), min((middle + half) / (1 + square), 1.0))
-
-
-def by_trial(right: Sequence[int], of: Sequence[int], *, seed: int = 0) -> Rate:
-    """A rate over trials, with an interval by drawing whole trials: touches of one trial are not independent.
-
-    It is no narrower than Wilson's, which a bootstrap without a single error would shrink to nothing.
-
-    Examples
-    --------
-    >>> print(by_trial([10, 10, 7], [10, 10, 10]))
-    0.900 [0.700, 1.000]
-    """
-    whole = wilson(sum(right), sum(of))
-    if not sum(of):
-        return whole
-    drawn = np.random.default_rng(seed).integers(0, len(of), (DRAWS, len(of)))
-    count = np.asarray(of, dtype=float)[drawn].sum(axis=1)
-    rates = (np.asarray(right, dtype=float)[drawn].sum(axis=1) / np.maximum(count, 1))[count > 0]
-    low, high = np.quantile(rates, (0.025, 0.975))
-    return Rate(whole.value, min(float(low), whole.low), max(float(high), whole.high))
 
 
 def poisson(count: int, minutes: float) -> Rate:

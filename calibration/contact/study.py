@@ -9,8 +9,9 @@ import numpy as np
 
 from calibration.contact.detector import FALSE_ALARMS, Contact, detect
 from calibration.contact.peers import fixed_threshold, high_pass
-from calibration.contact.score import Rate, Score, by_trial, poisson, score
+from calibration.contact.score import Score, poisson, score
 from calibration.contact.simulator import ABLATIONS, Scene, Trial, simulate, without
+from skinfab.rates import Rate, by_trial
 from skinfab.readout.frame import Recording
 
 #: Ours first.

@@ -12,9 +12,10 @@ import numpy as np
 
 from calibration.contact.detector import detect
 from calibration.contact.objects import OBJECTS
-from calibration.contact.score import Rate, poisson
+from calibration.contact.score import poisson
 from calibration.contact.simulator import Scene, simulate
 from calibration.contact.study import ablation, figures, judge
+from skinfab.rates import Rate
 from skinfab.readout.frame import Channel, Recording, Stream
 
 #: Others than those that the detector was made with.
