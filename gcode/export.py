@@ -10,7 +10,7 @@ from typing import Literal, get_args
 
 from gcode.emit import Arcs
 from gcode.outputs import write_all
-from gcode.used import used_by
+from gcode.used import Used, used_by, with_room_for_nozzle
 from gcode.write import write_skin
 from skinfab.drawings.dxf import write_dxf
 from skinfab.drawings.obj import write_flat_obj
@@ -20,6 +20,7 @@ from skinfab.drawings.svg import write_svg
 from skinfab.errors import InputError
 from skinfab.files import explain_os_error
 from skinfab.mould import can_be_cast, skin_moulds, write_mould
+from skinfab.placement.bare import bare_pieces
 from skinfab.placement.check import validate
 from skinfab.progress import Progress, part_of, silent
 from skinfab.skin import Skin
@@ -108,7 +109,7 @@ def export_everything(*, skin: Skin, folder: Path, progress: Progress = silent) 
     validate(skin, used.material)
     named = replace(skin, printer=used.printer_name, material=used.material_name)
     with staged_folder(folder) as stage:
-        report = write_all(named, stage, used, progress=progress)
+        report = write_all(named, stage, used, notes=_bare(skin, used), progress=progress)
         files = sorted(str(path.relative_to(stage)) for path in stage.rglob("*") if path.is_file())
     return Exported(tuple(folder / name for name in files), tuple(report["warnings"]))
 
@@ -144,11 +145,17 @@ def export_report(*, skin: Skin, path: Path, progress: Progress = silent) -> Exp
         with TemporaryDirectory(prefix=".skinfab-", dir=path.parent) as place:
             made = Path(place) / "made"
             made.mkdir()
-            report = write_all(skin, made, used, progress=part_of(progress, 0.0, 0.95))
+            report = write_all(skin, made, used, notes=_bare(skin, used), progress=part_of(progress, 0.0, 0.95))
             (made / "report.html").replace(path)
     except OSError as fault:
         raise InputError(explain_os_error(fault, path)) from fault
     return Exported((path,), tuple(report["warnings"]))
+
+
+def _bare(skin: Skin, used: Used) -> list[str]:
+    """What `skinfab make` says of the pieces that have no sensor."""
+    roomy, _ = with_room_for_nozzle(used.material, used.printer)
+    return bare_pieces(skin, roomy)
 
 
 def _told(folder: Path, names: list[str], notes: list[str]) -> Exported:

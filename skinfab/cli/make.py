@@ -75,6 +75,7 @@ def _make(args: argparse.Namespace, folder: Path, watch: Stopwatch, progress: Pr
     """The report, and how many of its warnings the user has read already."""
     from gcode.outputs import write_all
     from gcode.used import with_room_for_nozzle
+    from skinfab.placement.bare import bare_pieces
     from skinfab.placement.place import place_sensors
     from skinfab.progress import part_of
 
@@ -87,6 +88,8 @@ def _make(args: argparse.Namespace, folder: Path, watch: Stopwatch, progress: Pr
             roomy, wider = with_room_for_nozzle(used.material, used.printer)
             sensors, warnings = place_sensors(skin, roomy, args.sensors)
             skin, warnings = replace(skin, sensors=sensors), [*wider, *warnings]
+        else:
+            warnings = bare_pieces(skin, with_room_for_nozzle(used.material, used.printer)[0])
     rest = part_of(progress, 0.75, 1.0)
     report = write_all(skin, folder, used, distortions=distortions, notes=[*notes, *warnings], progress=rest, watch=watch)
     return report, len(notes)

@@ -69,6 +69,8 @@ def test_everything_is_what_make_writes(skin: Skin, tmp_path: Path) -> None:
     for report in reports:
         del report["timing_s"], report["peak_rss_mb"]
     assert reports[0] == reports[1]
+    (bare,) = [text for text in told.notes if "P2" in text]
+    assert bare.startswith("piece P2 has no sensor") and bare in reports[0]["warnings"]
     assert seen == sorted(seen) and seen[-1] == 1.0
 
 

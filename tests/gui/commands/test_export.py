@@ -138,6 +138,7 @@ def test_everything_and_the_report(window, tmp_path):
     window.do("export_everything", tmp_path / "all")
     assert set(tree(tmp_path / "all")) == set(export.files_of("everything", window.session.skin))
     assert window.said[-1] == f"Wrote {len(tree(tmp_path / 'all'))} files into {tmp_path / 'all'}."
+    assert any(text.startswith("piece P2 has no sensor") for text in window.problems("warning"))
     window.do("export_report", tmp_path / "page.html")
     assert "data:image/png" in (tmp_path / "page.html").read_text()
 
