@@ -1,0 +1,207 @@
+"""The paper's experiment on simulated participants: who touches what how often, and how often each sensor condition is right.
+
+Each participant learns and is tested alone: five trials of each class, no contact being one, then ten rounds over all patterns.
+A trial of the learning phase is one window of 1024 readings; one of the test phase is ten windows in a row, and what most of the ten
+estimates say counts. No touch is in both phases.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from skinfab.errors import InputError
+from skinfab.fingertip.nail.finger import Finger
+from skinfab.fingertip.nail.patterns import TESTS
+from skinfab.fingertip.nail.published import CONDITIONS, columns, fit, histograms, modes
+from skinfab.fingertip.nail.simulator import WINDOW, Scene, Touch, participant, readings, touch
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+#: The order of the tests is part of what a seed gives.
+_TEST_NUMBER = {name: k for k, name in enumerate(TESTS)}
+
+
+@dataclass(frozen=True)
+class Protocol:
+    """How much is recorded; the defaults are the paper's.
+
+    Parameters
+    ----------
+    participants : int
+    training : int
+        Trials of each class, no contact being one.
+    rounds : int
+        Of the test, over all patterns but not no contact.
+    estimates : int
+        Windows of a trial of the test.
+    samples : int
+        Readings of a window.
+    """
+
+    participants: int = 10
+    training: int = 5
+    rounds: int = 10
+    estimates: int = 10
+    samples: int = WINDOW
+
+    def __post_init__(self) -> None:
+        for name, value in vars(self).items():
+            if value < 1:
+                raise InputError(f"{value} {name} are none; a test needs one at least")
+
+
+@dataclass(frozen=True, eq=False)
+class Trials:
+    """What was recorded of some touches.
+
+    Parameters
+    ----------
+    touches : tuple of n Touch
+        The truth.
+    classes : (n,) int
+        0 is no contact, k the k-th pattern of the test.
+    readings : (n, estimates, samples, 6) float
+        Windows one after the other.
+    """
+
+    touches: tuple[Touch, ...]
+    classes: IntArray
+    readings: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class Session:
+    """One participant in one test.
+
+    Parameters
+    ----------
+    test : str
+        One of `TESTS`.
+    participant : int
+        From 1.
+    finger : Finger
+    training, rounds : Trials
+    """
+
+    test: str
+    participant: int
+    finger: Finger
+    training: Trials
+    rounds: Trials
+
+
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """What came out of a test.
+
+    Parameters
+    ----------
+    test : str
+    accuracy : dict of (participants,) float
+        Part of each participant's trials that were right, by condition.
+    counts : dict of (k, k + 1) int
+        All participants' trials, by condition: row k what was touched, from the first pattern on; column what was said,
+        from no contact on.
+    """
+
+    test: str
+    accuracy: dict[str, FloatArray]
+    counts: dict[str, IntArray]
+
+    def mean(self, condition: str) -> float:
+        """Of the participants' accuracies."""
+        return float(self.accuracy[condition].mean())
+
+    def deviation(self, condition: str) -> float:
+        """Standard deviation among participants."""
+        return float(self.accuracy[condition].std(ddof=1))
+
+
+def session(test: str, number: int, *, protocol: Protocol | None = None, scene: Scene | None = None, seed: int = 0) -> Session:
+    """Record one participant; the same seed gives the same finger in all three tests, and other touches.
+
+    Parameters
+    ----------
+    test : str
+        One of `TESTS`.
+    number : int
+        Of the participant, from 1.
+    """
+    if test not in TESTS:
+        raise InputError(f"there is no test {test!r}; there are {', '.join(TESTS)}")
+    p, patterns = protocol or Protocol(), TESTS[test]
+    finger = participant(np.random.default_rng([seed, number]), scene)
+    rng = np.random.default_rng([seed, number, _TEST_NUMBER[test]])
+
+    def recorded(classes: IntArray, estimates: int) -> Trials:
+        touches = tuple(touch(None if k == 0 else patterns[k - 1], rng, scene) for k in classes)
+        values = readings(finger, touches, rng, samples=estimates * p.samples, scene=scene)
+        return Trials(touches, classes, values.reshape(len(classes), estimates, p.samples, 6))
+
+    training = recorded(np.repeat(np.arange(len(patterns) + 1), p.training), 1)
+    rounds = recorded(np.tile(np.arange(1, len(patterns) + 1), p.rounds), p.estimates)
+    return Session(test, number, finger, training, rounds)
+
+
+def sessions(test: str, *, protocol: Protocol | None = None, scene: Scene | None = None, seed: int = 0) -> Iterator[Session]:
+    """Each participant's in turn."""
+    for number in range(1, (protocol or Protocol()).participants + 1):
+        yield session(test, number, protocol=protocol, scene=scene, seed=seed)
+
+
+def published_answers(of: Session, conditions: Sequence[str] = tuple(CONDITIONS)) -> dict[str, IntArray]:
+    """What the published method says of each trial of the test, by sensor condition."""
+    trained = histograms(of.training.readings[:, 0])
+    n, estimates, samples, _ = of.rounds.readings.shape
+    asked = histograms(of.rounds.readings.reshape(n * estimates, samples, 6))
+    out = {}
+    for condition in conditions:
+        used = columns(condition)
+        said = fit(trained[:, used], of.training.classes).predict(asked[:, used])
+        out[condition] = modes(said.reshape(n, estimates))
+    return out
+
+
+def study(
+    recorded: Iterable[Session],
+    answers: Callable[[Session], Mapping[str, IntArray]] = published_answers,
+    *,
+    told: Callable[[Session], None] | None = None,
+) -> Outcome:
+    """Ask a method about each session of one test.
+
+    Parameters
+    ----------
+    recorded : iterable of Session
+        From `sessions`; one is in memory at a time.
+    answers : callable
+        Gives, by condition, what it says of each trial of the test.
+    told : callable, optional
+        Called with each session that is done.
+
+    Examples
+    --------
+    >>> small = Protocol(participants=2, training=2, rounds=1, estimates=1, samples=256)
+    >>> found = study(sessions("edges4", protocol=small))
+    >>> sorted(found.accuracy) == sorted(CONDITIONS), found.accuracy["GxGyGz"].shape, int(found.counts["GxGyGz"].sum())
+    (True, (2,), 8)
+    """
+    accuracy: dict[str, list[float]] = {}
+    counts: dict[str, IntArray] = {}
+    tests = []
+    for each in recorded:
+        tests.append(each.test)
+        true, k = each.rounds.classes, len(TESTS[each.test])
+        for condition, said in answers(each).items():
+            accuracy.setdefault(condition, []).append(float((said == true).mean()))
+            np.add.at(counts.setdefault(condition, np.zeros((k, k + 1), dtype=np.int64)), (true - 1, said), 1)
+        if told is not None:
+            told(each)
+    if len(set(tests)) != 1:
+        raise InputError(f"sessions of {len(set(tests))} tests cannot be judged together; give those of one")
+    return Outcome(tests[0], {name: np.array(each) for name, each in accuracy.items()}, counts)
