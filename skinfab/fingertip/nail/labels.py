@@ -1,0 +1,220 @@
+"""Logs with labels: a table that says from when to when, in which log, what was touched.
+
+A row a trial; the columns ``log``, ``start_s``, ``end_s`` and ``label`` must be there, the others may be: ``participant``, ``trial``,
+``part`` (``train`` or ``test``), ``x_mm``, ``y_mm``, ``angle_deg`` and ``force_n``. Times count from the log's first frame. The label of no
+contact is ``none``. Lines that begin with ``#`` are remarks; a simulator says ``# simulated: true``.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from skinfab.errors import InputError
+from skinfab.files import atomic_write
+from skinfab.readout.frame import Recording
+from skinfab.readout.logs.log import read_log
+from skinfab.spreadsheet import read_csv_lines
+
+FloatArray = NDArray[np.float64]
+
+#: The six channels, in the order of every array here: acceleration along, angular velocity about x, y and z.
+CHANNELS = ("Ax", "Ay", "Az", "Gx", "Gy", "Gz")
+#: The label of a finger that touches nothing.
+NOTHING = "none"
+#: A larger table is none of trials.
+MAX_BYTES = 50_000_000
+
+_NEEDED = ("log", "start_s", "end_s", "label")
+_WORDS = ("log", "label", "participant", "trial", "part")
+_COLUMNS = ("log", "start_s", "end_s", "label", "participant", "trial", "part", "x_mm", "y_mm", "angle_deg", "force_n")
+
+
+@dataclass(frozen=True)
+class Label:
+    """What was touched in one trial.
+
+    Parameters
+    ----------
+    log : str
+        Name of the log's file, beside the table.
+    start_s, end_s : float
+        From the log's first frame on.
+    label : str
+        The class; `NOTHING` for no contact.
+    participant, trial, part : str
+        Empty where nobody said.
+    x_mm, y_mm : float
+        The middle of what was aimed at, on the pad; NaN where there is none.
+    angle_deg : float
+        Direction of an edge; NaN where there is none.
+    force_n : float
+        NaN where nobody measured it.
+    """
+
+    log: str
+    start_s: float
+    end_s: float
+    label: str
+    participant: str = ""
+    trial: str = ""
+    part: str = ""
+    x_mm: float = math.nan
+    y_mm: float = math.nan
+    angle_deg: float = math.nan
+    force_n: float = math.nan
+
+
+@dataclass(frozen=True, eq=False)
+class Trial:
+    """A label and its readings.
+
+    Parameters
+    ----------
+    label : Label
+    values : (n, 6) float
+        In the order of `CHANNELS`; NaN where a reading is missing or not valid.
+    saturated : (n, 6) bool
+        At the end of the channel's range: the value is no measurement.
+    rate_hz : float
+    """
+
+    label: Label
+    values: FloatArray
+    saturated: NDArray[np.bool_]
+    rate_hz: float
+
+
+def write_labels(path: str | Path, labels: Sequence[Label], *, simulated: bool) -> None:
+    """Write the table."""
+    text = io.StringIO()
+    text.write("# simulated: true\n" if simulated else "")
+    rows = csv.writer(text, lineterminator="\n")
+    rows.writerow(_COLUMNS)
+    for each in labels:
+        cells = (getattr(each, name) for name in _COLUMNS)
+        rows.writerow([cell if isinstance(cell, str) else "" if math.isnan(cell) else f"{cell:.9g}" for cell in cells])
+    atomic_write(path, text.getvalue())
+
+
+def read_labels(path: str | Path) -> tuple[list[Label], bool]:
+    """The rows of a table, and whether it says that a simulator made it.
+
+    Raises
+    ------
+    InputError
+        It cannot be read, a column is missing, or a cell is no number; which one is said.
+    """
+    path = Path(path)
+    lines, delimiter = read_csv_lines(path, max_bytes=MAX_BYTES, wanted="a table of labels as a CSV file")
+    simulated = any(line.lower().replace(" ", "") == "#simulated:true" for line in lines)
+    body = [(k, line) for k, line in enumerate(lines, start=1) if line.strip() and not line.startswith("#")]
+    try:
+        rows = list(csv.reader([line for _, line in body], delimiter=delimiter, strict=True))
+    except csv.Error as fault:
+        raise InputError(f"{path} is not a CSV file: {fault}; give a table of labels") from fault
+    head = [name.strip() for name in rows[0]] if rows else []
+    if missing := [name for name in _NEEDED if name not in head]:
+        raise InputError(f"{path} has no column {missing[0]!r}; a table of labels needs {', '.join(_NEEDED)}")
+    labels = [_label(dict(zip(head, row, strict=False)), f"{path}, line {k}") for (k, _), row in zip(body[1:], rows[1:], strict=False)]
+    if not labels:
+        raise InputError(f"{path} has headings and no rows; a row says which log holds what, from when to when")
+    return labels, simulated
+
+
+def _label(cells: dict[str, str], where: str) -> Label:
+    if any(not cells.get(name, "").strip() for name in _NEEDED):
+        raise InputError(f"{where}: {', '.join(_NEEDED)} must all be there")
+    words = {name: cells.get(name, "").strip() for name in _WORDS}
+    numbers = {name: _number(cells.get(name, ""), f"{where}, {name}") for name in _COLUMNS if name not in _WORDS}
+    if not 0 <= numbers["start_s"] < numbers["end_s"]:
+        raise InputError(f"{where}: {numbers['start_s']:g} to {numbers['end_s']:g} s is no time of a log; the start must be before the end")
+    return Label(**words, **numbers)  # type: ignore[arg-type]
+
+
+def _number(cell: str, where: str) -> float:
+    text = cell.strip()
+    if not text or text.lower() == "nan":
+        return math.nan
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.inf
+    if not math.isfinite(value):
+        raise InputError(f"{where}: {cell!r} is no number; mend it or leave it empty")
+    return value
+
+
+def read_trials(path: str | Path) -> tuple[list[Trial], bool, list[str]]:
+    """The trials of a table, whether they are simulated, and what is to be said of them.
+
+    Raises
+    ------
+    InputError
+        As `read_labels`; a log cannot be read, has none of the channels, or ends before a trial does.
+    """
+    path = Path(path)
+    labels, simulated = read_labels(path)
+    logs: dict[str, tuple[Recording, FloatArray, NDArray[np.bool_], float]] = {}
+    trials, notes = [], []
+    for each in labels:
+        if each.log not in logs:
+            log = read_log(path.parent / each.log)
+            notes += [f"{log.file}: {note}" if log.file not in note else note for note in log.notes]
+            simulated |= log.recording.stream.simulated
+            values, bad = six_channels(log.recording)
+            logs[each.log] = (log.recording, values, bad, rate_of(log.recording))
+        recording, values, bad, rate = logs[each.log]
+        time = recording.device_time - recording.device_time[0]
+        first, last = np.searchsorted(time, [each.start_s - 0.5 / rate, each.end_s - 0.5 / rate])
+        if last - first < 2 or time[-1] < each.end_s - 1.5 / rate:
+            raise InputError(
+                f"{path}: {each.log} ends at {time[-1]:.3f} s and a trial of it lasts from {each.start_s:g} to {each.end_s:g} s; "
+                "give the whole log, or mend the table"
+            )
+        trials.append(Trial(each, values[first:last], bad[first:last], rate))
+    return trials, simulated, notes
+
+
+def six_channels(recording: Recording) -> tuple[FloatArray, NDArray[np.bool_]]:
+    """Readings in the order of `CHANNELS`, (n, 6), NaN where there is none, and which of them are saturated.
+
+    Raises
+    ------
+    InputError
+        There is none of the channels.
+    """
+    stream = recording.stream
+    there = [name in stream.names for name in CHANNELS]
+    if not any(there):
+        raise InputError(f"stream {stream.name} has none of the channels {', '.join(CHANNELS)}; it has {', '.join(stream.names)}")
+    values = np.full((len(recording), 6), np.nan)
+    saturated = np.zeros((len(recording), 6), dtype=bool)
+    for k, name in enumerate(CHANNELS):
+        if there[k]:
+            values[:, k] = recording.column(name)
+            saturated[:, k] = recording.saturated[:, stream.index(name)]
+    return values, saturated
+
+
+def rate_of(recording: Recording) -> float:
+    """Frames a second: by the times, which know better than what was written on the box.
+
+    Raises
+    ------
+    InputError
+        There are too few frames, or their times do not rise.
+    """
+    time = recording.device_time[np.isfinite(recording.device_time)]
+    steps = np.diff(time)
+    if len(steps) < 1 or not np.median(steps) > 0:
+        raise InputError(f"stream {recording.stream.name}: {len(time)} frames with times that do not rise give no rate; record some more")
+    # A mean without the gaps: the median alone would be rounded as coarsely as the device's clock.
+    return float(1 / steps[steps < 1.5 * np.median(steps)].mean())
