@@ -106,9 +106,7 @@ def motor_force(finger: Finger, omega: FloatArray) -> ComplexArray:
     return out
 
 
-def respond(
-    finger: Finger, contact: FloatArray, stiffened: FloatArray, omega: FloatArray, force: ComplexArray, posture: FloatArray
-) -> ComplexArray:
+def respond(finger: Finger, contact: FloatArray, stiffened: FloatArray, omega: FloatArray, force: ComplexArray) -> ComplexArray:
     """What the sensor reads of a force that turns at one frequency.
 
     Parameters
@@ -121,8 +119,6 @@ def respond(
     omega : (n,) float, rad/s
     force : (n, 6) complex
         From `motor_force`.
-    posture : (n, 6) float
-        The finger's own stiffnesses are multiplied by these.
 
     Returns
     -------
@@ -133,8 +129,8 @@ def respond(
     damping = 2 * finger.damping_ratio * np.sqrt(finger.stiffness * inertia)
     touched = (finger.contact_n_per_m * stiffened)[:, None, None] * contact
     w = np.asarray(omega)[:, None, None]
-    held = posture * finger.stiffness - w[..., 0] ** 2 * inertia + 1j * w[..., 0] * damping
-    X = np.linalg.solve(held[..., None] * np.eye(6) + (1 + 1j * w * finger.contact_delay_s) * touched, force[..., None])[..., 0]
+    held = np.diag(finger.stiffness) - w**2 * np.diag(inertia) + 1j * w * np.diag(damping)
+    X = np.linalg.solve(held + (1 + 1j * w * finger.contact_delay_s) * touched, force[..., None])[..., 0]
     w = w[..., 0]
     # Both are small, so that the sensor stays where it is on the body, and gyroscopic terms are of second order.
     acceleration = -(w**2) * (X[:, :3] + np.cross(X[:, 3:], finger.imu_mm / 1e3))

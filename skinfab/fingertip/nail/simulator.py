@@ -39,8 +39,16 @@ _PAD_MM = -6.0
 #: Pressure along what is touched falls off with the pad's curvature, across and along the finger: exp(-(x/a)^2 - (y/b)^2).
 _PAD_HALF_MM = np.array([8.0, 12.0])
 _EDGE_LENGTH_MM = 20.0
-#: Hertz: a contact's stiffness grows with the cube root of the force.
-_HERTZ = 1 / 3
+
+#: Means of the participants. Held alone, the finger would swing with these frequencies along and about x, y, z.
+_MASS_KG = 6e-3
+_INERTIA_KGM2 = np.array([2.6e-7, 1.0e-7, 2.0e-7])
+_HELD_HZ = np.array([68.0, 41.0, 69.0, 76.0, 99.0, 145.0])
+_DAMPING = 0.24
+_CONTACT_N_PER_M = 3300.0
+_MOTOR_MM = np.array([0.0, -5.6, 6.0])
+_IMU_MM = np.array([0.0, 6.7, 5.4])
+_IMBALANCE_KGM = 4.0e-8
 
 
 @dataclass(frozen=True)
@@ -63,10 +71,16 @@ class Scene:
         As a part of the wanted force.
     person_scatter : float
         Of mass, inertia and stiffnesses among participants, as a part (log-normal).
-    posture_scatter : float
-        Of the stiffness that holds the finger, from touch to touch, as a part (log-normal).
-    lean_rad : float
-        Of the finger against the vertical from touch to touch: what gravity is in each channel.
+    mount_mm : float
+        Of motor and sensor on the nail among participants, each way.
+    tilt_rad : float
+        Of the motor's plane among participants, each way.
+    hertz : float
+        A contact's stiffness grows with the force to this power; Hertz's for a round pad is 1/3.
+    contact_delay_s : float
+        Damping over stiffness of what touches the pad.
+    gravity_g : float
+        Along z.
     noise_g, noise_dps : float
         Of each reading.
     range_g, range_dps : float
@@ -80,15 +94,18 @@ class Scene:
     turn_rad: float = math.radians(18)
     force_scatter: float = 0.10
     person_scatter: float = 0.15
-    posture_scatter: float = 0.0
-    lean_rad: float = 0.1
+    mount_mm: float = 0.3
+    tilt_rad: float = 0.08
+    hertz: float = 1 / 3
+    contact_delay_s: float = 2.5e-4
+    gravity_g: float = 1.0
     noise_g: float = 0.05
     noise_dps: float = 6.0
     range_g: float = 4.0
     range_dps: float = 500.0
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
 class Touch:
     """A finger on a pattern, or held still in the air.
 
@@ -104,10 +121,6 @@ class Touch:
         0 in the air.
     drive_hz : float
         The motor's frequency meanwhile.
-    posture : (6,) float
-        The finger's stiffnesses are multiplied by these.
-    gravity_g : (3,) float
-        Along x, y and z.
     """
 
     pattern: Pattern | None
@@ -116,32 +129,29 @@ class Touch:
     angle_rad: float
     force_n: float
     drive_hz: float
-    posture: FloatArray
-    gravity_g: FloatArray
 
 
 def participant(rng: np.random.Generator, scene: Scene | None = None) -> Finger:
     """A finger drawn about the means."""
-    scatter = (scene or Scene()).person_scatter
+    scene = scene or Scene()
 
     def drawn(mean: ArrayLike) -> FloatArray:
         means = np.asarray(mean, dtype=float)
-        return np.asarray(means * np.exp(scatter * rng.standard_normal(means.shape)))
+        return np.asarray(means * np.exp(scene.person_scatter * rng.standard_normal(means.shape)))
 
-    mass = float(drawn(6e-3))
-    inertia = drawn([3.5e-7, 1.5e-7, 3.5e-7])
-    held_hz = np.concatenate([drawn([90.0, 70.0, 110.0]), drawn([110.0, 150.0, 120.0])])
+    mass = float(drawn(_MASS_KG))
+    inertia = drawn(_INERTIA_KGM2)
     return Finger(
         mass_kg=mass,
         inertia_kgm2=inertia,
-        stiffness=np.append(np.full(3, mass), inertia) * (2 * math.pi * held_hz) ** 2,
-        damping_ratio=float(drawn(0.25)),
-        contact_n_per_m=float(drawn(2500.0)),
-        contact_delay_s=2.5e-4,
-        motor_mm=np.array([0.0, -2.0, 6.0]) + 0.3 * rng.standard_normal(3),
-        imu_mm=np.array([0.0, 5.0, 6.0]) + 0.3 * rng.standard_normal(3),
-        imbalance_kgm=float(drawn(3.25e-8)),
-        tilt=0.08 * rng.standard_normal(2),
+        stiffness=np.append(np.full(3, mass), inertia) * (2 * math.pi * drawn(_HELD_HZ)) ** 2,
+        damping_ratio=float(drawn(_DAMPING)),
+        contact_n_per_m=float(drawn(_CONTACT_N_PER_M)),
+        contact_delay_s=scene.contact_delay_s,
+        motor_mm=_MOTOR_MM + scene.mount_mm * rng.standard_normal(3),
+        imu_mm=_IMU_MM + scene.mount_mm * rng.standard_normal(3),
+        imbalance_kgm=_IMBALANCE_KGM,
+        tilt=scene.tilt_rad * rng.standard_normal(2),
     )
 
 
@@ -153,36 +163,32 @@ def touch(pattern: Pattern | None, rng: np.random.Generator, scene: Scene | None
     # Beyond these the paper's participants tried again.
     force = FORCE_N * float(np.clip(1 + scene.force_scatter * rng.standard_normal(), 0.8, 1.2))
     drive = scene.drive_hz * (1 + scene.drive_scatter * float(rng.standard_normal()))
-    posture = np.exp(scene.posture_scatter * rng.standard_normal(6))
-    gravity = np.append(np.sin(scene.lean_rad * rng.standard_normal(2)), 1.0)
-    gravity /= np.linalg.norm(gravity)
     if pattern is None:
-        return Touch(None, math.nan, math.nan, math.nan, 0.0, drive, posture, gravity)
+        return Touch(None, math.nan, math.nan, math.nan, 0.0, drive)
     x, y = pattern.x_mm + float(off[0]), pattern.y_mm + float(off[1])
-    return Touch(pattern, x, y, pattern.angle_rad + turned, force, drive, posture, gravity)
+    return Touch(pattern, x, y, pattern.angle_rad + turned, force, drive)
 
 
-def phasors(finger: Finger, touches: Sequence[Touch], *, harmonic: float = Scene.harmonic) -> ComplexArray:
+def phasors(finger: Finger, touches: Sequence[Touch], *, scene: Scene | None = None) -> ComplexArray:
     """The finger's answers at the drive and at twice the drive.
 
     Parameters
     ----------
     finger : Finger
     touches : sequence of n Touch
-    harmonic : float
-        Force at twice the drive, as a part of that at the drive.
+    scene : Scene, optional
 
     Returns
     -------
     (n, 2, 6) complex
         G and deg/s; see `respond`.
     """
+    scene = scene or Scene()
     contact = contact_matrix(*_touched(touches))
-    stiffened = np.array([(each.force_n / FORCE_N) ** _HERTZ for each in touches])
-    posture = np.array([each.posture for each in touches])
+    stiffened = np.array([(each.force_n / FORCE_N) ** scene.hertz for each in touches])
     omega = 2 * math.pi * np.array([each.drive_hz for each in touches])
     force = motor_force(finger, omega)
-    answers = [respond(finger, contact, stiffened, k * omega, part * force, posture) for k, part in ((1, 1.0), (2, harmonic))]
+    answers = [respond(finger, contact, stiffened, k * omega, part * force) for k, part in ((1, 1.0), (2, scene.harmonic))]
     return np.stack(answers, axis=1)
 
 
@@ -233,13 +239,13 @@ def readings(
     scene = scene or Scene()
     if samples < 1:
         raise InputError(f"{samples} readings of a touch are none; ask for one or more")
-    z = phasors(finger, touches, harmonic=scene.harmonic)
+    z = phasors(finger, touches, scene=scene)
     time = np.arange(samples) / RATE_HZ
     drive = np.array([each.drive_hz for each in touches])[:, None]
     cycles = rng.uniform(size=(len(touches), 1)) + drive * time + drift_hz_per_s * time**2 / 2
     turn = np.exp(2j * math.pi * cycles)[..., None]
     out = (z[:, None, 0] * turn + z[:, None, 1] * turn**2).real
-    out[..., :3] += np.array([each.gravity_g for each in touches])[:, None]
+    out[..., 2] += scene.gravity_g
     out += np.repeat([scene.noise_g, scene.noise_dps], 3) * rng.standard_normal(out.shape)
     ends = np.repeat([scene.range_g, scene.range_dps], 3)
     clipped: FloatArray = np.clip(out, -ends, ends)
