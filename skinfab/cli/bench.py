@@ -16,6 +16,7 @@ NAMES = {
     "gcode": "arcs and chord tolerances against file size, deviation and time",
     "calibrate": "models and degrees of a strain calibration against held-out error and time",
     "control": "gain, delay and period against the error of a controlled joint",
+    "texture": "length and peaks of a spectrum against how often a texture is told right",
     "readout": "framing and byte errors against frames lost and wrong in silence",
 }
 
@@ -26,6 +27,7 @@ MODULES = {
     "gcode": ("gcode.bench", False),
     "calibrate": ("calibration.bench.calibrate", False),
     "control": ("calibration.bench.control", False),
+    "texture": ("skinfab.bench.texture", False),
     "readout": ("skinfab.bench.readout", False),
 }
 

@@ -1,0 +1,211 @@
+"""`skinfab force simulate|train|run texture`: what the fingertip slides over."""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import io
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from skinfab.cli import steps
+from skinfab.cli.bench import repeats
+
+if TYPE_CHECKING:
+    from skinfab.fingertip.force.logs import WrenchLog
+    from skinfab.fingertip.force.texture import Slide
+    from skinfab.fingertip.force.texture_model import Decision
+
+_TRAINED = ("model.npz", "confusion.png", "result.json")
+_RUN = ("texture.csv", "texture.png", "result.json")
+
+
+def add_parsers(topics: Mapping[str, argparse._SubParsersAction[argparse.ArgumentParser]]) -> None:
+    """Add the topic to its verbs."""
+    from skinfab.cli.force import add_output, finish
+
+    p = topics["simulate"].add_parser("texture", help="slides over the paper's six materials")
+    p.add_argument("--specimens", metavar="N", type=repeats, default=6, help="of each material (default: 6)")
+    p.add_argument("--slides", metavar="N", type=repeats, default=6, help="over each specimen (default: 6)")
+    p.add_argument("--seed", type=steps.seed, default=0, help="of all chance (default: 0)")
+    add_output(p, "a log a slide")
+    finish(p, simulate)
+
+    p = topics["train"].add_parser("texture", help="learn textures from labelled slides")
+    _add_logs(p)
+    p.add_argument("--labels", metavar="FILE", type=Path, help="CSV of log,label,group, for logs that do not say it themselves")
+    p.add_argument("--features", choices=("bands", "published"), default="bands", help="bands (default), or the paper's nine")
+    p.add_argument("--seed", type=steps.seed, default=0, help="of what is held out when (default: 0)")
+    add_output(p, "the model, what it took for what, and the result")
+    finish(p, train)
+
+    p = topics["run"].add_parser("texture", help="say which texture logs were taken of")
+    _add_logs(p)
+    p.add_argument("--model", metavar="FILE", type=Path, required=True, help="model.npz of train")
+    add_output(p, "table, figure and result")
+    finish(p, run)
+
+
+def _add_logs(p: argparse.ArgumentParser) -> None:
+    p.add_argument("logs", metavar="LOG", nargs="+", type=Path, help="slides: columns time, Fx, Fy, Fz (N), Mx, My, Mz (N mm)")
+
+
+def simulate(args: argparse.Namespace) -> int:
+    """Write a log a slide."""
+    from skinfab.fingertip.force.logs import write_wrench
+    from skinfab.fingertip.force.simulator import texture_logs
+    from skinfab.staging import staged_folder
+
+    logs = texture_logs(specimens=args.specimens, slides=args.slides, seed=args.seed)
+    names = [f"{log.name.replace(chr(39), '').replace(' ', '-')}.csv" for log in logs]
+    with staged_folder(args.output) as folder:
+        for name, log in zip(names, logs, strict=True):
+            write_wrench(log, folder / name)
+    result = {
+        "simulated": True,
+        "files": [str(args.output / name) for name in names],
+        "labels": {name: log.label for name, log in zip(names, logs, strict=True)},
+        "groups": {name: log.group for name, log in zip(names, logs, strict=True)},
+    }
+    if args.json:
+        print(json.dumps(result))
+        return 0
+    materials = len(set(result["labels"].values()))  # type: ignore[attr-defined]
+    print(f"{args.output}: {len(logs)} simulated slides over {args.specimens} specimens of {materials} materials")
+    return 0
+
+
+def train(args: argparse.Namespace) -> int:
+    """Learn, judge on specimens that were held out, and write the model."""
+    from skinfab.files import require_apart
+    from skinfab.fingertip.force.labels import require_labels, with_labels
+    from skinfab.fingertip.force.texture_model import save_texture, train_texture
+    from skinfab.staging import staged_folder
+
+    require_apart(args.output, _TRAINED, [*args.logs, *([args.labels] if args.labels else [])])
+    logs, slides, notes = _read(args.logs, quiet=args.json)
+    if args.labels:
+        logs = with_labels(logs, args.labels)
+    require_labels(logs)
+    trained = train_texture(slides, [log.label for log in logs], [log.group for log in logs], features=args.features, seed=args.seed)
+    made_from = [
+        {"file": log.name, "sha256": log.sha256, "label": log.label, "group": log.group, "simulated": log.simulated} for log in logs
+    ]
+    simulated = any(log.simulated for log in logs)
+    result = {
+        "simulated": simulated,
+        "features": args.features,
+        "logs": len(logs),
+        "groups": trained.groups,
+        "held_out": trained.confusion.facts() | {"accuracy": asdict(trained.accuracy)},
+        "accuracy_of_a_random_split": trained.ungrouped,
+        "made_from": made_from,
+        "notes": notes,
+    }
+    with staged_folder(args.output) as folder:
+        save_texture(trained, folder / "model.npz", made_from=made_from)
+        trained.confusion.draw(folder / "confusion.png", title="Textures, specimens held out", simulated=simulated)
+        (folder / "result.json").write_text(json.dumps(result, indent=1, allow_nan=False) + "\n")
+    if args.json:
+        print(json.dumps(result, allow_nan=False))
+        return 0
+    steps.say(notes)
+    print(
+        f"{len(logs)} slides of {len(trained.confusion.names)} materials{_made(simulated)}: {trained.accuracy} right on specimens held out"
+    )
+    print(f"{args.output}: {', '.join(_TRAINED)}")
+    return 0
+
+
+def run(args: argparse.Namespace) -> int:
+    """Say which texture each log was taken of."""
+    from skinfab.files import require_apart
+    from skinfab.fingertip.force.texture_figure import draw_slides
+    from skinfab.fingertip.force.texture_model import load_texture
+    from skinfab.staging import staged_folder
+
+    require_apart(args.output, _RUN, [*args.logs, args.model])
+    model, simulated_model = load_texture(args.model)
+    logs, slides, notes = _read(args.logs, quiet=args.json)
+    decisions = [_decided(model.decide, log, each) for log, each in zip(logs, slides, strict=True)]
+    simulated = simulated_model or any(log.simulated for log in logs)
+    if simulated_model and not all(log.simulated for log in logs):
+        notes.append("the model was learned from simulated slides; what it says of real ones is not to be relied on")
+    result = {
+        "simulated": simulated,
+        "decisions": [
+            {
+                "log": log.name,
+                "simulated": log.simulated,
+                "texture": d.name,
+                "nearest": d.nearest,
+                "probability": d.probability,
+                "probabilities": d.probabilities,
+                "label": log.label or None,
+                "samples": len(each.normal),
+            }
+            for log, each, d in zip(logs, slides, decisions, strict=True)
+        ],
+        "notes": notes,
+    }
+    with staged_folder(args.output) as folder:
+        (folder / "texture.csv").write_text(_table(logs, decisions))
+        (folder / "result.json").write_text(json.dumps(result, indent=1, allow_nan=False) + "\n")
+        draw_slides(logs, slides, decisions, folder / "texture.png", simulated=simulated)
+    if args.json:
+        print(json.dumps(result, allow_nan=False))
+        return 0
+    steps.say(notes)
+    for log, d in zip(logs, decisions, strict=True):
+        print(
+            f"{log.name}{_made(log.simulated)}: {d.name}"
+            + (f" (like no known one; nearest {d.nearest})" if not d.known else f", {d.probability:.2f}")
+        )
+    print(f"{args.output}: {', '.join(_RUN)}")
+    return 0
+
+
+def _decided(decide: Any, log: WrenchLog, each: Slide) -> Decision:
+    from skinfab.errors import InputError
+
+    try:
+        found: Decision = decide(each)
+        return found
+    except InputError as fault:
+        raise InputError(f"{log.name}: {fault}") from fault
+
+
+def _read(paths: Sequence[Path], *, quiet: bool) -> tuple[list[WrenchLog], list[Slide], list[str]]:
+    from skinfab.errors import InputError
+    from skinfab.fingertip.force.logs import read_wrench
+    from skinfab.fingertip.force.texture import sliding_part
+    from skinfab.progress import terminal_progress
+
+    names = [path.name for path in paths]
+    if twice := next((name for name in names if names.count(name) > 1), None):
+        raise InputError(f"two logs are called {twice}; give each file a name of its own")
+    logs, slides, notes = [], [], []
+    with terminal_progress(quiet=quiet) as progress:
+        for k, path in enumerate(paths):
+            progress(k / len(paths), path.name)
+            logs.append(read_wrench(path))
+            slides.append(sliding_part(logs[-1]))
+            notes += [*logs[-1].notes, *slides[-1].notes]
+        progress(1.0, "done")
+    return logs, slides, notes
+
+
+def _table(logs: Sequence[WrenchLog], decisions: Sequence[Decision]) -> str:
+    text = io.StringIO()
+    rows = csv.writer(text, lineterminator="\n")
+    rows.writerow(["log", "texture", "nearest", "probability", "label", "simulated"])
+    for log, d in zip(logs, decisions, strict=True):
+        rows.writerow([log.name, d.name, d.nearest, f"{d.probability:.4f}", log.label, int(log.simulated)])
+    return text.getvalue()
+
+
+def _made(simulated: bool) -> str:
+    return " (simulated)" if simulated else ""
