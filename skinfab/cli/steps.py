@@ -40,6 +40,13 @@ def seed(text: str) -> int:
     return int(text)
 
 
+def counting(text: str) -> int:
+    """A whole number from one up, for argparse."""
+    if not (text.isascii() and text.isdecimal() and int(text) > 0):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number from 1 up")
+    return int(text)
+
+
 def not_negative(text: str) -> float:
     """A finite number from zero up, for argparse."""
     try:
