@@ -27,3 +27,20 @@ AROUND: dict[str, dict[str, float]] = {"edges12": dict.fromkeys(("AyAz", "AzAx",
 
 #: Peaks of the readings, in G and deg/s: "around 2.0 G" and "250 deg/s".
 PEAK_G, PEAK_DPS = 2.0, 250.0
+
+#: Pairs of conditions that differ (p < 0.05 after correction). Of the pins it names these four, and says besides, in words that can be
+#: read in several ways, that conditions of two channels differ from those of more.
+_ALL, _A, _G = "AxAyAzGxGyGz", "AxAyAz", "GxGyGz"
+DIFFERING: dict[str, tuple[set[str], ...]] = {
+    "edges4": (
+        *({_ALL, other} for other in (_A, "AxAy", "AyAz", "AzAx")),
+        *({_G, other} for other in (_A, "AxAy", "AyAz", "AzAx")),
+    ),
+    "pins6": ({_A, "AxAy"}, {_G, "AxAy"}, {_G, "AzAx"}, {_G, "GyGz"}),
+    "edges12": (
+        *({_ALL, other} for other in (_A, "AxAy", "AyAz", "AzAx", "GxGy", "GyGz", "GzGx")),
+        *({_G, other} for other in ("AxAy", "AyAz", "AzAx", "GxGy", "GyGz", "GzGx")),
+        {_A, "AxAy"},
+        {"AxAy", "AyAz"},
+    ),
+}

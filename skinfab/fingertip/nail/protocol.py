@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skinfab.errors import InputError
+from skinfab.fingertip.confusion import Confusion
 from skinfab.fingertip.nail.finger import Finger
 from skinfab.fingertip.nail.patterns import TESTS
 from skinfab.fingertip.nail.published import CONDITIONS, columns, fit, histograms, modes
@@ -104,14 +105,13 @@ class Outcome:
     test : str
     accuracy : dict of (participants,) float
         Part of each participant's trials that were right, by condition.
-    counts : dict of (k, k + 1) int
-        All participants' trials, by condition: row k what was touched, from the first pattern on; column what was said,
-        from no contact on.
+    confusion : dict of Confusion
+        All participants' trials, by condition; the classes are called by their numbers, as in the paper's figures, and 0 is no contact.
     """
 
     test: str
     accuracy: dict[str, FloatArray]
-    counts: dict[str, IntArray]
+    confusion: dict[str, Confusion]
 
     def mean(self, condition: str) -> float:
         """Of the participants' accuracies."""
@@ -188,20 +188,22 @@ def study(
     --------
     >>> small = Protocol(participants=2, training=2, rounds=1, estimates=1, samples=256)
     >>> found = study(sessions("edges4", protocol=small))
-    >>> sorted(found.accuracy) == sorted(CONDITIONS), found.accuracy["GxGyGz"].shape, int(found.counts["GxGyGz"].sum())
+    >>> sorted(found.accuracy) == sorted(CONDITIONS), found.accuracy["GxGyGz"].shape, int(found.confusion["GxGyGz"].counts.sum())
     (True, (2,), 8)
     """
     accuracy: dict[str, list[float]] = {}
-    counts: dict[str, IntArray] = {}
+    confusion: dict[str, Confusion] = {}
     tests = []
     for each in recorded:
         tests.append(each.test)
-        true, k = each.rounds.classes, len(TESTS[each.test])
+        true = each.rounds.classes
+        names = tuple(str(k) for k in range(len(TESTS[each.test]) + 1))
         for condition, said in answers(each).items():
             accuracy.setdefault(condition, []).append(float((said == true).mean()))
-            np.add.at(counts.setdefault(condition, np.zeros((k, k + 1), dtype=np.int64)), (true - 1, said), 1)
+            found = Confusion.of([str(k) for k in true], [str(k) for k in said], names)
+            confusion[condition] = confusion[condition] + found if condition in confusion else found
         if told is not None:
             told(each)
     if len(set(tests)) != 1:
         raise InputError(f"sessions of {len(set(tests))} tests cannot be judged together; give those of one")
-    return Outcome(tests[0], {name: np.array(each) for name, each in accuracy.items()}, counts)
+    return Outcome(tests[0], {name: np.array(each) for name, each in accuracy.items()}, confusion)

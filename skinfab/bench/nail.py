@@ -1,0 +1,178 @@
+"""The paper's three tests on simulated participants: the published method and the improved one on the same touches.
+
+Two thirds of the tables are about the simulator itself: how near the published method comes to the paper's accuracies, whether the
+sensor conditions differ as they do there, and what each term of the simulator is for.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from skinfab.bench.flatten import read_csv, write_csv
+from skinfab.bench.nail_ablation import ablate
+from skinfab.fingertip.nail.paper import ACCURACY, AROUND, DIFFERING
+from skinfab.fingertip.nail.patterns import TESTS
+from skinfab.fingertip.nail.protocol import Outcome, Protocol, Session, published_answers, sessions, study
+from skinfab.fingertip.nail.published import CONDITIONS
+from skinfab.fingertip.nail.statistics import Comparison, compare
+from skinfab.progress import Progress, part_of, silent
+
+Table = Sequence[Mapping[str, Any]]
+
+PUBLISHED = "published"
+#: Part of the time that the three tests take; the ablation is the rest.
+_TESTS_SHARE = 0.5
+
+
+@dataclass(frozen=True)
+class Row:
+    """One method under one sensor condition of one test.
+
+    Parameters
+    ----------
+    test, condition, method : str
+    percent, deviation : float
+        Mean and standard deviation of the participants' accuracies.
+    paper : float
+        The paper's mean; NaN where it is not printed.
+    around : bool
+        The paper says "around" of it.
+    within : bool
+        The means differ by less than the standard deviation; true where the paper has none.
+    simulated : bool
+    """
+
+    test: str
+    condition: str
+    method: str
+    percent: float
+    deviation: float
+    paper: float
+    around: bool
+    within: bool
+    simulated: bool = True
+
+
+@dataclass(frozen=True)
+class Difference:
+    """Two sensor conditions under the published method, and whether they differ.
+
+    Parameters
+    ----------
+    test, a, b : str
+    method : str
+        Of the comparison.
+    p : float
+        Corrected for the number of pairs.
+    differs : bool
+    paper : bool
+        Does the paper say that they differ?
+    simulated : bool
+    """
+
+    test: str
+    a: str
+    b: str
+    method: str
+    p: float
+    differs: bool
+    paper: bool
+    simulated: bool = True
+
+
+def run(folder: Path, *, repeats: int = 1, progress: Progress = silent, protocol: Protocol | None = None, seed: int = 0) -> dict[str, Any]:
+    """Run the three tests, and write tables, charts and a sentence, nail*.csv, nail*.png and nail.txt, into `folder`.
+
+    Parameters
+    ----------
+    folder : Path
+        There already.
+    repeats : int
+        Of timings, of which there are none here.
+    progress : Progress
+    protocol : Protocol, optional
+        The paper's where it is left out.
+    seed : int
+        Of the participants.
+
+    Returns
+    -------
+    dict
+        "sentence", "notes" (what to know of it) and "rows".
+    """
+    from skinfab.bench.nail_chart import draw_accuracy, draw_confusion
+    from skinfab.files import atomic_write
+
+    protocol = protocol or Protocol()
+    outcomes = {}
+    for k, test in enumerate(TESTS):
+        part = part_of(progress, _TESTS_SHARE * k / len(TESTS), _TESTS_SHARE * (k + 1) / len(TESTS))
+        outcomes[test] = _outcome(test, protocol, seed, part)
+    compared = {test: compare(outcome.accuracy) for test, outcome in outcomes.items()}
+    write_csv([row for outcome in outcomes.values() for row in _rows(outcome)], folder / "nail.csv")
+    write_csv([row for test, of in compared.items() for row in _differences(test, of)], folder / "nail_pairs.csv")
+    write_csv(ablate(protocol, seed=seed, progress=part_of(progress, _TESTS_SHARE, 1.0)), folder / "nail_ablation.csv")
+    # From here on only what the tables hold is used, so that charts and sentence cannot say anything else.
+    table, pairs, terms = (read_csv(folder / f"nail{part}.csv") for part in ("", "_pairs", "_ablation"))
+    said = sentence(table, pairs)
+    notes = [
+        f"simulated participants ({protocol.participants}, seed {seed}); what the simulator leaves out stands in docs/nail.md",
+        *(f"{test}: {found}" for test, found in compared.items()),
+    ]
+    atomic_write(folder / "nail.txt", "\n".join([said, *notes]) + "\n")
+    draw_accuracy(table, folder / "nail.png")
+    for test, outcome in outcomes.items():
+        draw_confusion(outcome, folder / f"nail_confusion_{test}.png")
+    return {"sentence": said, "notes": notes, "simulated": True, "rows": table, "pairs": pairs, "ablation": terms}
+
+
+def _outcome(test: str, protocol: Protocol, seed: int, progress: Progress) -> Outcome:
+    progress(0.0, test)
+
+    def told(of: Session) -> None:
+        progress(of.participant / protocol.participants, f"{test}: participant {of.participant}")
+
+    return study(sessions(test, protocol=protocol, seed=seed), published_answers, told=told)
+
+
+def _rows(outcome: Outcome) -> list[Row]:
+    rows = []
+    around = AROUND.get(outcome.test, {})
+    for condition in CONDITIONS:
+        mean, deviation = 100 * outcome.mean(condition), 100 * outcome.deviation(condition)
+        paper = (around | ACCURACY[outcome.test]).get(condition, math.nan)
+        within = not abs(mean - paper) > deviation
+        rows.append(Row(outcome.test, condition, PUBLISHED, mean, deviation, paper, condition in around, within))
+    return rows
+
+
+def _differences(test: str, found: Comparison) -> list[Difference]:
+    ours = {frozenset((pair.a, pair.b)) for pair in found.differing()}
+    return [
+        Difference(test, pair.a, pair.b, found.method, pair.p, frozenset((pair.a, pair.b)) in ours, {pair.a, pair.b} in DIFFERING[test])
+        for pair in found.pairs
+    ]
+
+
+def sentence(table: Table, pairs: Table) -> str:
+    """How near it comes to the paper: every number in it comes from the tables."""
+    rows = [row for row in table if row["method"] == PUBLISHED]
+    known = [row for row in rows if row["paper"] is not None]
+    near = [row for row in known if row["within"]]
+    heads = []
+    for test in TESTS:
+        full = next(row for row in rows if row["test"] == test and row["condition"] == "AxAyAzGxGyGz")
+        heads.append(f"{full['percent']:.1f} % of {test} ({full['paper']:.1f})")
+    far = [f"{row['condition']} of {row['test']} {row['percent']:.0f} instead of {row['paper']:.0f}" for row in known if row not in near]
+    printed = [row for row in pairs if row["paper"]]
+    both = sum(bool(row["differs"]) for row in printed)
+    return (
+        f"Nail, simulated: with all six channels the published method is right in {', '.join(heads)} (the paper's in brackets); "
+        f"{len(near)} of {len(known)} accuracies that the paper gives are within the participants' standard deviation"
+        + (f", and these are not: {', '.join(far)}" if far else "")
+        + f"; of {len(printed)} pairs of sensor conditions that differ in the paper {both} differ here."
+    )

@@ -1,0 +1,58 @@
+"""The charts of the nail's tests: accuracies by sensor condition as in the paper's figures 6, 8 and 10, confusion as in 7, 9, 11 and 12."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from skinfab.bench.charts import png
+from skinfab.files import atomic_write
+from skinfab.fingertip.nail.protocol import Outcome
+from skinfab.fingertip.nail.published import CONDITIONS
+
+_OURS, _PAPER = "#0072B2", "#D55E00"
+_DPI = 130
+
+
+def draw_accuracy(table: Sequence[Mapping[str, Any]], path: Path) -> None:
+    """Write the accuracies as PNG: a panel a test, bars with the participants' standard deviation, the paper's as marks."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    tests = list(dict.fromkeys(row["test"] for row in table))
+    figure = Figure(figsize=(11, 3.9), dpi=_DPI, layout="constrained")
+    FigureCanvasAgg(figure)
+    figure.suptitle("Published method by sensor condition (simulated participants; bars: their standard deviation)", fontsize=10)
+    for axes, test in zip(figure.subplots(1, len(tests), sharey=True, squeeze=False)[0], tests, strict=True):
+        rows = [row for row in table if row["test"] == test and row["method"] == "published"]
+        at = np.arange(len(rows))
+        axes.bar(at, [r["percent"] for r in rows], yerr=[r["deviation"] for r in rows], color=_OURS, alpha=0.75, capsize=2, label="here")
+        for exact, mark in ((True, "D"), (False, "_")):
+            of = [(k, r["paper"]) for k, r in enumerate(rows) if r["paper"] is not None and bool(r["around"]) != exact]
+            if of:
+                axes.plot(
+                    *zip(*of, strict=True), mark, color=_PAPER, ms=6 if exact else 14, mew=1.5, label="paper" if exact else '"around"'
+                )
+        axes.set_xticks(at, [r["condition"] for r in rows], rotation=90, fontsize=7)
+        axes.set(title=test, ylim=(0, 100))
+        axes.legend(fontsize=7, loc="upper right")
+    figure.axes[0].set_ylabel("right, %")
+    atomic_write(path, png(figure))
+
+
+def draw_confusion(outcome: Outcome, path: Path) -> None:
+    """Write what was taken for what under each sensor condition as PNG, in percent of each row; 0 is no contact."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    size = len(next(iter(outcome.confusion.values())).names)
+    figure = Figure(figsize=(3 * (1.5 + 0.2 * size), 3 * (1.5 + 0.2 * size)), dpi=_DPI, layout="constrained")
+    FigureCanvasAgg(figure)
+    figure.suptitle(f"{outcome.test}, published method: what (row) was taken for what (column), % (simulated)", fontsize=10)
+    for axes, condition in zip(figure.subplots(3, 3).ravel(), CONDITIONS, strict=True):
+        found = outcome.confusion[condition]
+        found.draw_on(axes, title=f"{condition}: {100 * found.accuracy.value:.1f} %")
+    atomic_write(path, png(figure))
