@@ -8,6 +8,10 @@ demo: setup
 	@echo
 	@echo "Results are in demo_out/: open demo_out/report.html in a browser; G-code is in demo_out/gcode/, moulds in demo_out/mould/."
 
+# The many processes that tests start find what they import compiled; of two workers each computes on one core.
+test: export PYTHONDONTWRITEBYTECODE =
+test: export OMP_NUM_THREADS = 1
+test: export OPENBLAS_NUM_THREADS = 1
 test: lint
 	@for one in tests/setup_*.sh; do $$one || { [ -z "$$CI" ] && echo "test: going on without $$one; the tests that need it are skipped"; } || exit 1; done
 	@# Stealing leaves files whole but for a few: what the tests of a file share is made once. (loadgroup groups nothing with pytest 9.2 and xdist 3.8.)

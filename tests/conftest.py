@@ -1,8 +1,13 @@
-"""Lets every test import the shared shapes (`import shapes`), and what tests start be interrupted."""
+"""Lets every test import the shared shapes (`import shapes`), and what tests start be interrupted; pictures are made small."""
 
 import signal
 import sys
+from collections.abc import Iterator
 from pathlib import Path
+
+import pytest
+
+from skinfab.report import preview
 
 sys.path.insert(0, str(Path(__file__).parent))
 
@@ -11,3 +16,11 @@ sys.path.insert(0, str(Path(__file__).parent))
 for number in (signal.SIGINT, signal.SIGHUP):
     if signal.getsignal(number) == signal.SIG_IGN:
         signal.signal(number, lambda *_: None)
+
+
+@pytest.fixture(scope="session", autouse=True)
+def small_previews() -> Iterator[None]:
+    """Two thirds of what making a cube costs is drawing its preview in full; tests/report, which looks at it, has it so."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(preview, "_DPI", 40)
+        yield

@@ -1,5 +1,7 @@
 """A skin whose every figure is known in closed form: a box's side wall, rolled open."""
 
+from collections.abc import Iterator
+
 import numpy as np
 import pytest
 
@@ -8,7 +10,11 @@ from skinfab.mesh.model import Mesh
 from skinfab.patterns.registry import make_pattern
 from skinfab.pieces import Piece
 from skinfab.placement.sensor import Sensor
+from skinfab.report import preview
 from skinfab.skin import Skin, Source
+
+#: Before tests/conftest.py makes it small.
+DPI = 150
 
 SIDE, HEIGHT, STEPS = 60.0, 50.0, 8
 
@@ -33,6 +39,14 @@ def wall_skin(*, file: str = "wall.obj") -> Skin:
     piece = Piece("P1", np.arange(len(F)), vertices, F, UV)
     mesh = Mesh(V, vertices[F], "wall")
     return Skin(mesh, Source(file, "ab" * 32, "mm", 1.0), np.c_[seam[:-1], seam[1:]], (piece,), sensors)
+
+
+@pytest.fixture(scope="module", autouse=True)
+def previews_in_full() -> Iterator[None]:
+    """As users have them."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(preview, "_DPI", DPI)
+        yield
 
 
 @pytest.fixture
