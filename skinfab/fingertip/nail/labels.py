@@ -1,7 +1,8 @@
 """Logs with labels: a table that says from when to when, in which log, what was touched.
 
 A row a trial; the columns ``log``, ``start_s``, ``end_s`` and ``label`` must be there, the others may be: ``participant``, ``trial``,
-``part`` (``train`` or ``test``), ``x_mm``, ``y_mm``, ``angle_deg`` and ``force_n``. Times count from the log's first frame. The label of no
+``part`` (``train`` or ``test``), ``x_mm``, ``y_mm``, ``angle_deg``, ``force_n`` and, of a simulator, which knows it, where the pattern
+really lay: ``true_x_mm``, ``true_y_mm``, ``true_angle_deg``. Times count from the log's first frame. The label of no
 contact is ``none``. Lines that begin with ``#`` are remarks; a simulator says ``# simulated: true``.
 """
 
@@ -34,7 +35,8 @@ MAX_BYTES = 50_000_000
 
 _NEEDED = ("log", "start_s", "end_s", "label")
 _WORDS = ("log", "label", "participant", "trial", "part")
-_COLUMNS = ("log", "start_s", "end_s", "label", "participant", "trial", "part", "x_mm", "y_mm", "angle_deg", "force_n")
+_TRUE = ("true_x_mm", "true_y_mm", "true_angle_deg")
+_COLUMNS = ("log", "start_s", "end_s", "label", "participant", "trial", "part", "x_mm", "y_mm", "angle_deg", "force_n", *_TRUE)
 
 
 @dataclass(frozen=True)
@@ -57,6 +59,8 @@ class Label:
         Direction of an edge; NaN where there is none.
     force_n : float
         NaN where nobody measured it.
+    true_x_mm, true_y_mm, true_angle_deg : float
+        Where the pattern really lay; NaN where nobody knows.
     """
 
     log: str
@@ -70,6 +74,9 @@ class Label:
     y_mm: float = math.nan
     angle_deg: float = math.nan
     force_n: float = math.nan
+    true_x_mm: float = math.nan
+    true_y_mm: float = math.nan
+    true_angle_deg: float = math.nan
 
 
 @dataclass(frozen=True, eq=False)

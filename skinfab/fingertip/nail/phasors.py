@@ -29,6 +29,9 @@ FIND_SHORTEST = 64
 #: Smallest eigenvalue of the normal equations, as a part of the readings, with which the harmonic can still be told from the drive;
 #: below it (at a third or a quarter of the sampling rate, or with too few readings) the drive alone is fitted.
 _TOLD_APART = 1e-3
+#: Longer windows are cut into blocks of so many readings, each turned for itself (15 turns of the paper's motor): what the motor's speed
+#: drifts within 91 ms does not matter.
+BLOCK = 128
 #: The spectrum is read this finely before the frequency is refined: a quarter of a bin leaves half the main lobe's top.
 _FINER = 4
 #: The refinement ends where it moves the frequency by less, Hz: a hundredth of a turn in the longest window.
@@ -42,7 +45,8 @@ class Phasors:
     Parameters
     ----------
     drive : (n, 6) complex
-        The reading is the real part of ``drive exp(2 pi i f t)``, t from the middle of the window; NaN for a channel without enough readings.
+        The reading is the real part of ``drive exp(2 pi i f t)``, t from the middle of the window; NaN for a channel without
+        enough readings.
     harmonic : (n, 6) complex
         The same at 2 f; 0 where it cannot be told from the drive.
     noise : (n, 6) float
@@ -89,7 +93,7 @@ def find_drive(values: FloatArray, rate_hz: float, *, band_hz: tuple[float, floa
     >>> round(float(find_drive(one, 1400.0)[0]), 2)
     171.3
     """
-    n, samples, _ = values.shape
+    samples = values.shape[1]
     if samples < FIND_SHORTEST:
         raise InputError(f"{samples} readings are too few to find the motor's frequency in; {FIND_SHORTEST} are needed")
     low, high = band_hz[0], min(band_hz[1], 0.48 * rate_hz)
@@ -188,3 +192,88 @@ def _with_gaps(A: FloatArray, values: FloatArray, there: BoolArray) -> tuple[Flo
         x[plain, 3:, k] = 0.0
         left[:, k] = count - np.where(told, 5, 3)
     return x, left
+
+
+def reference_of(drive: ComplexArray) -> ComplexArray:
+    """What phasors are turned to: the direction that the given ones have in common, (n, 6) to (6,).
+
+    Channels count by their own size, so that units do not matter; a channel without readings counts nothing.
+
+    Examples
+    --------
+    >>> drive = np.exp(1j * np.array([[0.3], [2.0]])) * np.arange(1, 7)
+    >>> reference = reference_of(drive)
+    >>> np.ptp(np.angle(drive @ reference.conj() / np.exp(1j * np.array([0.3, 2.0])))).round(9)
+    np.float64(0.0)
+    """
+    known = np.nan_to_num(drive)
+    size = np.sqrt((np.abs(known) ** 2).mean(axis=0))
+    unit = np.divide(known, size, out=np.zeros_like(known), where=size > 0)
+    values, vectors = np.linalg.eigh(unit.T @ unit.conj())
+    common: ComplexArray = np.divide(vectors[:, values.argmax()], size, out=np.zeros(len(size), dtype=complex), where=size > 0)
+    return common
+
+
+def turned(drive: ComplexArray, reference: ComplexArray) -> ComplexArray:
+    """Phasors (..., 6) without the motor's phase: turned so that they lie along the reference as nearly as they can."""
+    along = (np.nan_to_num(drive) * reference.conj()).sum(axis=-1, keepdims=True)
+    size = np.abs(along)
+    out: ComplexArray = drive * np.divide(along.conj(), size, out=np.ones_like(along), where=size > 0)
+    return out
+
+
+def blocks_of(values: FloatArray) -> FloatArray:
+    """Windows (n, samples, 6) cut into blocks of equal length near `BLOCK`, (n, blocks, length, 6); the rest is left out.
+
+    Examples
+    --------
+    >>> blocks_of(np.zeros((2, 1024, 6))).shape, blocks_of(np.zeros((2, 33, 6))).shape
+    ((2, 8, 128, 6), (2, 1, 33, 6))
+    """
+    n, samples, channels = values.shape
+    count = max(samples // BLOCK, 1)
+    length = samples // count
+    return values[:, : count * length].reshape(n, count, length, channels)
+
+
+def turned_phasors(
+    values: FloatArray, rate_hz: float, drive_hz: float | FloatArray, reference: ComplexArray
+) -> tuple[ComplexArray, FloatArray]:
+    """Phasors of windows, block by block, turned to a reference and averaged; and the noise of a reading.
+
+    Returns
+    -------
+    drive : (n, 6) complex
+        NaN for a channel that no block of the window has enough readings of.
+    noise : (n, 6) float
+    """
+    blocks = blocks_of(values)
+    n, count = blocks.shape[:2]
+    found = lock_in(blocks.reshape(n * count, *blocks.shape[2:]), rate_hz, np.repeat(np.broadcast_to(drive_hz, (n,)), count))
+    each, noise = turned(found.drive, reference).reshape(n, count, -1), found.noise.reshape(n, count, -1)
+    if count == 1:
+        return each[:, 0], noise[:, 0]
+    there = np.isfinite(each)
+    of = there.sum(axis=1)
+    mean = np.divide(np.where(there, each, 0.0).sum(axis=1), of, out=np.full((n, each.shape[2]), np.nan + 0j), where=of > 0)
+    rms = np.sqrt(np.divide(np.where(there, noise**2, 0.0).sum(axis=1), of, out=np.full(of.shape, np.nan), where=of > 0))
+    return mean, rms
+
+
+def lock_in_weights(samples: int, rate_hz: float, drive_hz: float) -> ComplexArray:
+    """Weights w (samples,) with which ``w @ values`` is the phasor at the drive that `lock_in` fits to whole windows.
+
+    Raises
+    ------
+    InputError
+        A window is shorter than `SHORTEST`.
+
+    Examples
+    --------
+    >>> values = np.random.default_rng(0).standard_normal((33, 6))
+    >>> bool(np.allclose(lock_in_weights(33, 1400.0, 169.0) @ values, lock_in(values[None], 1400.0, 169.0).drive[0]))
+    True
+    """
+    # The fit is linear in the readings, so its answers to the unit readings are its weights.
+    fitted = lock_in(np.eye(samples)[None], rate_hz, drive_hz)
+    return fitted.drive[0]
