@@ -22,6 +22,7 @@ from gui.commands.seams import SeamCommands
 from gui.commands.sensors import SensorCommands
 from gui.commands.view import ViewCommands
 from gui.desk import Desk
+from gui.dialogs.colours import colour_dialogs
 from gui.dialogs.dialogs import Dialogs
 from gui.drop import accept_files
 from gui.jobs.background import Background
@@ -94,6 +95,7 @@ class App:
         )
         self.theme = THEMES[remembered.theme]
         apply(root, self.theme)
+        colour_dialogs(root, self.theme)
         self.background = Background(root)
         self.session, self.derived, self.shelf = Session(), Derived(self.background), ProfileShelf()
         self.autosave = Autosave(state / "autosave", failed=self._autosave_failed)
@@ -152,6 +154,7 @@ class App:
         """Light or dark."""
         self.theme = THEMES[name]
         apply(self.root, self.theme)
+        colour_dialogs(self.root, self.theme)
         for part in (self.view3d, self.view2d, self.problems, self.new_sensor, self.toolpath, self.live):
             part.restyle(self.theme)
         self.actions.refresh()

@@ -5,8 +5,9 @@ from __future__ import annotations
 import tkinter as tk
 from collections.abc import Sequence
 from pathlib import Path
-from tkinter import filedialog, simpledialog
+from tkinter import filedialog
 
+from gui.dialogs.number import ask_number
 from gui.dialogs.open_mesh import MeshChoice, ask_how_to_open
 from gui.dialogs.question import ask
 from gui.jobs.tasks import MeshFacts
@@ -37,7 +38,7 @@ class Dialogs:
 
     def number(self, title: str, text: str, *, least: int, most: int, value: int) -> int | None:
         """A whole number; None for no answer."""
-        return simpledialog.askinteger(title, text, parent=self._master, minvalue=least, maxvalue=most, initialvalue=value)
+        return ask_number(self._master, title, text, least=least, most=most, value=value)
 
     def open_file(self, title: str, kinds: Sequence[tuple[str, str]]) -> Path | None:
         """A file of one of these kinds: names with their patterns."""

@@ -8,7 +8,7 @@ from functools import partial
 from tkinter import ttk
 
 #: Longest line of a question, px; more lines in a row than a low screen shows are set in two columns.
-_WIDE, _MOST_LINES = 560, 20
+WIDE, MOST_LINES = 560, 20
 
 
 def place_over(window: tk.Toplevel, master: tk.Misc) -> None:
@@ -59,7 +59,7 @@ def ask(master: tk.Misc, title: str, text: str, answers: Sequence[str], *, cance
     body = ttk.Frame(window, padding=16, name="body")
     body.pack(fill="both", expand=True)
     short, long = _parted(text)
-    ttk.Label(body, text=short, wraplength=_WIDE, justify="left", name="text").pack(anchor="w")
+    ttk.Label(body, text=short, wraplength=WIDE, justify="left", name="text").pack(anchor="w")
     if long:
         columns = ttk.Frame(body, name="columns")
         columns.pack(fill="x", pady=(12, 0))
@@ -81,4 +81,4 @@ def _parted(text: str) -> tuple[str, list[str]]:
     """What comes before the last blank line, and the lines behind it where they are too many for one column."""
     head, _, tail = text.rpartition("\n\n")
     lines = tail.split("\n")
-    return (head, lines) if len(lines) > _MOST_LINES else (text, [])
+    return (head, lines) if len(lines) > MOST_LINES else (text, [])

@@ -59,15 +59,3 @@ def test_a_folder_is_chosen_or_not(root, dialogs, monkeypatch):
 def test_a_question_is_asked_over_the_window(root, dialogs):
     root.after(80, lambda: root.nametowidget("question.body.buttons.answer1").invoke())
     assert dialogs.ask("Title", "Which?", ("One", "Two")) == "Two"
-
-
-def test_a_number_is_asked(root, dialogs):
-    def act():
-        (window,) = [w for w in root.winfo_children() if w.winfo_class() in ("Toplevel", "_QueryInteger") or "query" in str(w).lower()]
-        entry = next(w for w in window.winfo_children() if w.winfo_class() == "Frame").winfo_children()[-1]
-        entry.delete(0, "end")
-        entry.insert(0, "8")
-        window.ok()
-
-    root.after(120, act)
-    assert dialogs.number("Cones", "How many?", least=0, most=200, value=0) == 8
