@@ -126,8 +126,8 @@ class App:
         self._first = root.after(50, self._begin, path)
 
     def close(self) -> None:
-        """Ask about unsaved work, and end."""
-        if not self._closed and self.files.may_leave():
+        """Ask about an export that goes on and about unsaved work, and end."""
+        if not self._closed and self.exports.may_leave() and self.files.may_leave():
             self._end(keep_copy=False)
 
     def abandon(self) -> None:
@@ -141,12 +141,14 @@ class App:
             if timer:
                 self.root.after_cancel(timer)
         self._refresh = self._behind = "none from now on"
+        geometry = self.root.geometry()
+        self.root.withdraw()  # what is stopped may take a moment to clean up after itself
         self.live.close()
         self.runner.close()
         self.background.close()
         self.autosave.close(keep=keep_copy)
         self.sweep.close()
-        what = replace(self.files.remembered, theme=self.theme.name, geometry=self.root.geometry())
+        what = replace(self.files.remembered, theme=self.theme.name, geometry=geometry)
         self.desk.guarded("close", lambda: remember(self.desk.state, what))
         self.root.destroy()
 
@@ -231,6 +233,7 @@ class App:
         measure = Measure(desk, self.view3d, self.view2d, self.background, theme=lambda: self.theme)
         self.toolbox = Toolbox(desk, self.view3d, self.view2d, theme=lambda: self.theme, pattern=self.new_sensor.pattern, more=[measure])
         views = ViewCommands(desk, self.view3d, self.view2d, theme=lambda: self.theme.name, use_theme=self.use_theme)
+        self.exports = ExportCommands(desk, self.arcs)
         actions = [
             *self.files.actions(),
             Action("quit", "Close", "File", self.close, "Control-q"),
@@ -239,7 +242,7 @@ class App:
             *self.seams.actions(),
             *SensorCommands(desk).actions(),
             *self.toolbox.actions(),
-            *ExportCommands(desk, self.arcs).actions(),
+            *self.exports.actions(),
             *views.actions(),
             *HelpCommands(desk, lambda: self.actions.keys()).actions(),
         ]

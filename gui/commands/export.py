@@ -12,6 +12,7 @@ from gcode.emit import Arcs
 from gcode.export import Drawing, Exported, Folder
 from gui.actions import Action
 from gui.desk import Desk
+from gui.jobs.runner import Job
 from gui.state.problem import Problem
 from gui.toolpath.choice import ARCS, ArcsChoice
 
@@ -21,6 +22,9 @@ _LOOK_MS = 200
 #: So many files that are there already are named.
 _NAMED = 6
 
+#: Answers to closing the window during an export.
+_WAIT, _STOP = "Wait", "Stop it and close"
+
 _DRAWINGS: dict[Drawing, str] = {"svg": "SVG", "dxf": "DXF", "pdf": "PDF 1:1", "obj": "flat OBJ"}
 
 
@@ -28,6 +32,8 @@ _DRAWINGS: dict[Drawing, str] = {"svg": "SVG", "dxf": "DXF", "pdf": "PDF 1:1", "
 class _Running:
     """An export that goes on, until it has ended in one way or another."""
 
+    label: str
+    job: Job | None = None
     ended: bool = False
 
 
@@ -43,6 +49,7 @@ class ExportCommands:
 
     def __init__(self, desk: Desk, arcs: ArcsChoice) -> None:
         self._desk, self._arcs = desk, arcs
+        self._running: _Running | None = None
 
     def actions(self) -> list[Action]:
         """For the table."""
@@ -66,6 +73,15 @@ class ExportCommands:
             *(drawing(kind) for kind in _DRAWINGS),
             Action("export_report", "Report …", "Export", self.report, "", pieces, "One page: what to print, weigh and pour."),
         ]
+
+    def may_leave(self) -> bool:
+        """Whether the window may be closed: while an export goes on that is asked, for its files would not be written."""
+        running = self._running
+        if running is None or running.ended or running.job is not self._desk.runner.job:
+            return True
+        text = f"{running.label[:1].upper()}{running.label[1:]} is still going on. If it is stopped, nothing of it is written."
+        answer = self._desk.dialogs.ask("An export is running", text, (_WAIT, _STOP), cancel=_WAIT)
+        return answer == _STOP
 
     def gcode(self) -> None:
         """``PIECE.gcode`` for each piece with sensors."""
@@ -130,7 +146,7 @@ class ExportCommands:
         return self._desk.dialogs.ask("Overwrite?", text, ("Overwrite", "Cancel"), cancel="Cancel") == "Overwrite"
 
     def _start(self, label: str, function: Callable[..., Exported], **arguments: Any) -> None:
-        running = _Running()
+        running = self._running = _Running(label)
 
         def done(exported: Exported) -> None:
             running.ended = True
@@ -141,7 +157,7 @@ class ExportCommands:
 
         self._desk.session.report("export", [])
         self._desk.work(label, function, done, source="export", failed=failed, **arguments)
-        job = self._desk.runner.job
+        running.job = job = self._desk.runner.job
 
         def look() -> None:
             if running.ended:

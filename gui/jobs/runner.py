@@ -143,13 +143,14 @@ class Runner:
         """End the process, at the end of the program."""
         self._closed = True
         self._clock.after_cancel(self._timer)
+        patience = GRACE_S if self._job is not None else 1.0
         self._job = None
         helpers = [self._helper, *([self._spare] if self._spare is not None else [])]
         for helper in helpers:
             helper.channel.close()
             helper.process.terminate()
         for process in [*(helper.process for helper in helpers), *(process for process, _ in self._retired)]:
-            process.join(timeout=1.0)
+            process.join(timeout=patience)
             if process.is_alive():
                 process.kill()
                 process.join()

@@ -187,6 +187,24 @@ def test_closed_during_a_job_no_process_is_left(start):
     assert time.monotonic() - began < 3
 
 
+def test_closed_during_an_export_it_asks(start, tmp_path):
+    person = start()
+    person.open(MESHES / "cube.obj")
+    person.press("F5")
+    person.wait()
+    person.answers.path = tmp_path / "out"
+    person.app.actions.do("export_everything")
+    person.wait(lambda: (tmp_path / "out").exists())
+    person.app.close()
+    assert person.answers.asked[-1] == (
+        "An export is running: Exporting everything is still going on. If it is stopped, nothing of it is written."
+    )
+    assert not person.app._closed and person.app.runner.job is not None, "by itself it waits"
+    person.answers.give["An export is running"] = "Stop it and close"
+    person.app.close()
+    assert person.app._closed and start.workers() == [] and not (tmp_path / "out").exists()
+
+
 def test_closed_under_a_question_it_ends(start):
     """The mesh dialog waits for its answer in a loop of its own: closing the window ends that too."""
     person = start()
