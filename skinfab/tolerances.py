@@ -190,3 +190,35 @@ OFFSET_MITRE = 2.0
 #: Faces about a vertex count as planes of their own where their normals differ by the second of these (two of them, rad), and as
 #: one curved surface below the first: there the sideways part of a least-squares fit is mostly noise of the triangulation.
 OFFSET_CREASE_RAD = (0.3490658503988659, 0.5235987755982988)  # 20 and 30 degrees
+
+#: Newton's search for the peak of a tactel array stops at steps below this, tactels: the seed's, 0.04 mm along the finger.
+NEWTON_TACTELS = 0.01
+
+#: Three tactels in a row of this share of the highest are a flat top: a small contact's neighbours in the seed's spacing read under
+#: a half of it, and in twice its density under 0.85.
+PEAK_FLAT = 0.9
+
+#: Another peak of a frame is a contact of its own from this share of the highest on: interpolation's ripples stay under a fifth.
+PEAK_OTHER = 1 / 3
+
+#: A fit of forces to a tactel array stops at steps below this: a tenth of what noise of one percent moves them, and what is left is its square.
+MATCH_MM = 5e-3
+
+#: One force on the array explains a frame that leaves less than this part of the sum of squares: gains that are off by 3 % leave
+#: a thousandth, a rod 8 mm long five times as much.
+MATCH_UNEXPLAINED = 4e-3
+
+#: Two forces are better than one where they leave less than this part of what the one left.
+MATCH_APART = 0.2
+
+#: A contour of deflection keeps its height within this part: a ten thousandth of a tactel where the surface is steep.
+CONTOUR_HEIGHT = 1e-6
+
+#: A fit of a line to a tactel array stops where its direction turns by less than this: a fiftieth of a degree.
+LINE_STEP_RAD = 3.5e-4
+
+#: A direction whose standard deviation is larger is not sure: two of these are 20 degrees, the seed's worst error.
+LINE_UNSURE_RAD = 0.17453292519943295  # 10 degrees
+
+#: Another direction explains a frame as well where it leaves less than so many variances of a reading more: a chance of one in seventy.
+LINE_RIVAL = 6.0
