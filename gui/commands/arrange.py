@@ -7,12 +7,10 @@ from dataclasses import replace
 
 from gui.actions import Action
 from gui.desk import Desk
+from gui.jobs import tasks
 from gui.state.selection import Target
 from skinfab.placement import arrange
 from skinfab.placement.edit import Sensors
-
-#: A copy comes to lie so far from its original, mm: near enough to be seen, far enough to be taken hold of.
-_BESIDE_MM = 5.0
 
 _ALIGN: tuple[tuple[arrange.Side, str], ...] = (
     ("left", "Align left"),
@@ -46,18 +44,19 @@ class ArrangeCommands:
         ]
 
     def copy(self) -> None:
-        """Copies are selected, to be dragged where they belong."""
-        chosen = self._chosen()
+        """Copies lie where there is room for them, and are selected."""
+        chosen, asked = self._chosen(), self._desk.skin
 
-        def work() -> None:
-            skin = self._desk.skin
-            sensors, new = arrange.copy(skin.sensors, chosen, dx=_BESIDE_MM, dy=-_BESIDE_MM)
-            self._desk.session.report("arrange", [])
-            self._desk.session.do(f"copy {', '.join(chosen)}", replace(skin, sensors=sensors))
+        def take(copied: tuple[Sensors, tuple[str, ...]]) -> None:
+            if self._desk.session.skin is not asked:
+                self._desk.dropped("the skin changed while room for copies was looked for, so none were made; copy again")
+                return
+            sensors, new = copied
+            self._desk.session.do(f"copy {', '.join(chosen)}", replace(asked, sensors=sensors))
             piece = next(s.piece for s in sensors if s.id == new[0])
             self._desk.session.select(Target(piece=piece, sensor=new[0], also=new[1:]))
 
-        self._desk.guarded("arrange", work)
+        self._desk.work("looking for room", tasks.copy_beside, take, source="arrange", skin=asked, ids=chosen)
 
     def _mirror(self, axis: arrange.Axis) -> Callable[[], None]:
         return lambda: self._change("mirror", lambda sensors, ids: arrange.mirror(sensors, ids, axis=axis))

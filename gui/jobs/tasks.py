@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -19,6 +19,8 @@ from skinfab.mesh.repair import clean, repair
 from skinfab.mesh.surface import surface
 from skinfab.mesh.units import guess_units
 from skinfab.mesh.wrap import WRAP_OFFSET, wrap
+from skinfab.placement import beside
+from skinfab.placement.edit import Sensors
 from skinfab.placement.place import place_sensors
 from skinfab.progress import Progress, part_of
 from skinfab.seams import partial
@@ -140,6 +142,13 @@ def place_anew(*, skin: Skin, file: Path | None, progress: Progress) -> tuple[Sk
     roomy, wider = with_room_for_nozzle(used.material, used.printer)
     sensors, warnings = place_sensors(skin, roomy, file)
     return replace(skin, sensors=sensors), (*wider, *warnings)
+
+
+def copy_beside(*, skin: Skin, ids: Sequence[str], progress: Progress) -> tuple[Sensors, tuple[str, ...]]:
+    """Copies of sensors where there is room for them."""
+    progress(0.1, "looking for room")
+    used = used_by(skin)
+    return beside.copy_beside(skin, ids, material=with_room_for_nozzle(used.material, used.printer)[0])
 
 
 def make_thick(*, skin: Skin, thickness: float, method: str, progress: Progress) -> Reopened:

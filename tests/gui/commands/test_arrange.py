@@ -10,11 +10,14 @@ from gui.commands.arrange import ArrangeCommands
 from gui.state.selection import NOTHING, Target
 from gui.state.session import Session
 from skinfab.errors import SkinfabError
+from skinfab.material import load_material
 from skinfab.mesh.model import Mesh
 from skinfab.patterns.registry import make_pattern
 from skinfab.pieces import Piece
+from skinfab.placement.check import validate
 from skinfab.placement.edit import middle_of
 from skinfab.placement.sensor import Sensor
+from skinfab.progress import silent
 from skinfab.skin import Skin, Source
 
 
@@ -40,7 +43,10 @@ def desk():
         def skin(self):
             return session.skin
 
-    made = Desk(session=session, guarded=guarded, said=said)
+    def work(label, function, done, *, source, **arguments):
+        guarded(source, lambda: done(function(**arguments, progress=silent)))
+
+    made = Desk(session=session, guarded=guarded, work=work, said=said, dropped=said.append)
     made.actions = {a.id: a for a in ArrangeCommands(made).actions()}
     return made
 
@@ -73,7 +79,22 @@ def test_copies_are_selected(desk):
     desk.session.select(Target(sensor="C1", also=("C3",)))
     desk.actions["copy"].run()
     assert desk.session.selected == Target(piece="P1", sensor="C4", also=("C5",))
-    assert middle_of(desk.skin.sensors[3]) - middle_of(desk.skin.sensors[0]) == pytest.approx((5, -5))
+    one, two = (middle_of(desk.skin.sensors[new]) - middle_of(desk.skin.sensors[old]) for new, old in ((3, 0), (4, 2)))
+    assert one == pytest.approx(two) and np.abs(one).max() > 10 and desk.said == []
+    validate(desk.skin, load_material())
+
+
+def test_without_room_no_copy_is_made(desk):
+    wide = make_pattern("contact-spiral", {"s": 45})
+    before = replace(desk.skin, sensors=tuple(replace(s, pattern=wide) for s in desk.skin.sensors[:1]))
+    small = replace(before.pieces[0], UV=before.pieces[0].UV * 0.5)
+    desk.session.do("full", replace(before, pieces=(small,)))
+    full = desk.skin
+    desk.session.select(Target(sensor="C1"))
+    desk.actions["copy"].run()
+    assert desk.skin is full and desk.said == [
+        "there is no room on P1 for a copy of C1; make it smaller first, or add a sensor to another piece"
+    ]
 
 
 def test_sensors_of_two_pieces_are_refused_in_words(desk):
@@ -82,3 +103,16 @@ def test_sensors_of_two_pieces_are_refused_in_words(desk):
     desk.session.select(Target(sensor="C1", also=("C2",)))
     desk.actions["align_left"].run()
     assert "one piece at a time" in desk.said[0]
+
+
+def test_what_is_changed_meanwhile_gets_no_copies(desk):
+    desk.session.select(Target(sensor="C1"))
+    work = desk.work
+
+    def slow(*order, **arguments):
+        desk.session.do("other", replace(desk.skin, seed=3))
+        work(*order, **arguments)
+
+    desk.work = slow
+    desk.actions["copy"].run()
+    assert len(desk.skin.sensors) == 3 and desk.session.undo_label == "other" and "copy again" in desk.said[0]
