@@ -16,6 +16,7 @@ NAMES = {
     "gcode": "arcs and chord tolerances against file size, deviation and time",
     "calibrate": "models and degrees of a strain calibration against held-out error and time",
     "control": "gain, delay and period against the error of a controlled joint",
+    "gravity": "how far a hand is turned against the error of a held object's centre of gravity",
     "texture": "length and peaks of a spectrum against how often a texture is told right",
     "readout": "framing and byte errors against frames lost and wrong in silence",
 }
@@ -27,6 +28,7 @@ MODULES = {
     "gcode": ("gcode.bench", False),
     "calibrate": ("calibration.bench.calibrate", False),
     "control": ("calibration.bench.control", False),
+    "gravity": ("skinfab.bench.gravity", False),
     "texture": ("skinfab.bench.texture", False),
     "readout": ("skinfab.bench.readout", False),
 }

@@ -1,0 +1,51 @@
+"""The chart of the centre of gravity: its error over the span of the poses and over their number, beside the paper's."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from skinfab.bench.charts import png
+from skinfab.bench.gravity import USUAL, paper_errors
+from skinfab.files import atomic_write
+
+_COLOURS = {"published": "#D55E00", "offset fitted": "#0072B2"}
+_DPI = 150
+
+
+def draw(table: Sequence[Mapping[str, Any]], path: Path) -> None:
+    """Write the chart as PNG: error over span and over poses, and what part of the errors the stated 95 % hold."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+    from matplotlib.ticker import NullFormatter
+
+    figure = Figure(figsize=(11.0, 3.9), dpi=_DPI, layout="constrained")
+    FigureCanvasAgg(figure)
+    figure.suptitle("Centre of gravity: how the hand is turned against the error (simulated)", fontsize=10)
+    panels = figure.subplots(1, 3)
+    asked = ((panels[0], "span_deg", "median_mm"), (panels[1], "poses", "median_mm"), (panels[2], "span_deg", "covered"))
+    for axes, over, key in asked:
+        for way, colour in _COLOURS.items():
+            fixed, value = ("poses", USUAL[1]) if over == "span_deg" else ("span_deg", USUAL[0])
+            rows = sorted((row for row in table if row["way"] == way and row[fixed] == value), key=lambda row: row[over])
+            axes.plot([r[over] for r in rows], [r[key] for r in rows], "o-", color=colour, ms=4, lw=1, label=way)
+            if key == "median_mm":
+                axes.plot([r[over] for r in rows], [r["p95_mm"] for r in rows], ":", color=colour, lw=1, label=f"{way}, 95 %")
+            usual = [r for r in rows if r[over] == (USUAL[0] if over == "span_deg" else USUAL[1]) and way == "offset fitted"]
+            for r in usual:
+                axes.plot(r[over], r[key], "o", ms=14, mfc="none", mec="#555555", mew=1.4)
+        axes.set_xscale("log")
+        ticks = sorted({row[over] for row in table})
+        axes.set_xticks(ticks, [f"{each:g}" for each in ticks], fontsize=8)
+        axes.xaxis.set_minor_formatter(NullFormatter())
+        axes.set_xlabel({"span_deg": f"turned by up to, degrees ({USUAL[1]} poses)", "poses": f"poses (within {USUAL[0]:g} degrees)"}[over])
+        axes.grid(True, which="both", lw=0.3, alpha=0.6)
+    for axes in panels[:2]:
+        axes.set_yscale("log")
+        axes.set_ylabel("error, mm")
+        axes.axhspan(min(paper_errors()), max(paper_errors()), color="#999999", alpha=0.25, lw=0, label="the paper's table 3")
+    panels[2].axhline(0.95, color="#555555", lw=1, ls="--")
+    panels[2].set(ylabel="errors within the stated 95 %", ylim=(0, 1.02))
+    panels[0].legend(fontsize=7)
+    atomic_write(path, png(figure))
