@@ -59,7 +59,7 @@ class Command:
     ----------
     speed : float, deg/s
     state : str
-        ``run``; ``block``: the joint does not go the way it was told to, and is told no more of that; ``hold``: the last safe
+        ``run``; ``block``: the joint does not go the way it was told to, and is told no more of that for a while; ``hold``: the last safe
         command once more; ``stop``: nothing good has come for too long.
     reason : str
         Why it is not ``run``; else empty.
@@ -170,10 +170,7 @@ class JointController:
         ]
         # Also without a good frame of one of them: the other's is remembered, and that time went by.
         wanted = self._rule.step(time, readings[0], readings[1], self._last.speed)
-        aim = self._last.target if wanted is None else wanted.target
-        self._follows.step(self._part(new[1]) if readings[1] is not None else None, aim=aim, command=self._last.speed)
-        if self._follows.stuck:
-            return self._without(time, self._in_vain("told to go both ways", "the joint is stuck, nobody drives it, or its sensor is off"))
+        self._follows.step(self._part(new[1]) if readings[1] is not None else None, command=self._last.speed)
         if wanted is None:
             return self._without(time, next(why for why in unfit if why))
         if not math.isfinite(wanted.speed):
@@ -199,18 +196,14 @@ class JointController:
 
     def _blocked(self, wanted: Wanted) -> Command:
         way = "greater" if wanted.speed > 0 else "smaller"
-        reason = self._in_vain(
-            f"told to go to {way} angles", "an object or its stop holds the joint, its drive is stuck, or its sensor is off"
+        reason = (
+            f"told to go to {way} angles by {self._follows.far:.0f} degrees, the robot's channel {self.robot.calibration.signal} "
+            "shows nothing of it: an object or its stop holds the joint, its drive is off or stuck, or its sensor is off"
         )
         return Command(0.0, "block", reason, wanted.target, wanted.angle, wanted.beyond, True)
 
-    def _in_vain(self, told: str, cause: str) -> str:
-        return (
-            f"{told} by {self._follows.far:.0f} degrees, the robot's channel {self.robot.calibration.signal} shows nothing of it: {cause}"
-        )
-
     def _run(self, time: float, wanted: Wanted) -> Command:
-        if self._good_at is not None and (self._last.state == "stop" or not 0 <= time - self._good_at <= HOLD_S + self.period_s):
+        if self._good_at is not None and (self._last.state in ("stop", "block") or not 0 <= time - self._good_at <= HOLD_S + self.period_s):
             self._resumed_at = time
         limit = self.limit
         if self._resumed_at is not None:

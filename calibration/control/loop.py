@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import gc
 import time
 from collections.abc import Callable, Iterator
@@ -106,7 +105,7 @@ def run_loop(source: Source, controller: JointController, send: Callable[[float]
             commands.append(command)
     finally:
         gc.unfreeze()
-        _stop(send, tried=bool(fault))
+        unstopped = _stop(send)
     sent = np.array([row[0] for row in rows])
     return Loop(
         sent - began,
@@ -115,14 +114,17 @@ def run_loop(source: Source, controller: JointController, send: Callable[[float]
         np.array([row[2] for row in rows]),
         passed,
         tuple(commands),
-        fault,
+        fault or unstopped,
     )
 
 
-def _stop(send: Callable[[float], None], *, tried: bool) -> None:
-    """Tell the joint to stop; who took no command before may not take this one either, and that is told already."""
-    with contextlib.suppress(InputError) if tried else contextlib.nullcontext():
+def _stop(send: Callable[[float], None]) -> str:
+    """Tell the joint to stop; why that could not be sent, else empty."""
+    try:
         send(0.0)
+    except InputError as error:
+        return str(error)
+    return ""
 
 
 def _newest(source: Source, timeout: float) -> Frame | None:

@@ -84,6 +84,19 @@ def test_a_hand_that_takes_no_more_commands_ends_it_and_the_record_stays(inputs:
     assert len(sent) == 6 and sent[-1] == 0.0  # a last try
 
 
+def test_a_hand_that_is_gone_when_it_should_stop_is_told(inputs: tuple[Input, Input]) -> None:
+    board = FingerBoard(uniform(length_s=0.5), seed=0)
+    ended = time.monotonic() + 0.3
+
+    def send(speed: float) -> None:
+        if time.monotonic() > ended and speed == 0.0:
+            raise InputError("it is gone")
+
+    with PacedFrames(board.stream, lambda: board) as source:
+        loop = run_loop(source, JointController(*inputs, gain=4.0), send, seconds=0.3)
+    assert loop.fault == "it is gone" and len(loop.commands) > 5
+
+
 def test_whatever_happens_the_joint_is_stopped(inputs: tuple[Input, Input]) -> None:
     board = FingerBoard(uniform(length_s=1.0), seed=0)
     sent: list[float] = []
