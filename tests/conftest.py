@@ -24,3 +24,8 @@ def small_previews() -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(preview, "_DPI", 40)
         yield
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """The longest tests first, so that no worker is left alone with them at the end."""
+    items.sort(key=lambda item: item.path.name != "test_real_meshes.py")

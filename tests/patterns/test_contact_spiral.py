@@ -1,4 +1,4 @@
-"""The spiral against its closed forms, over thousands of parameter sets, and its bounds."""
+"""The spiral against its closed forms, over hundreds of parameter sets, and its bounds."""
 
 import itertools
 import math
@@ -21,7 +21,7 @@ def spirals(draw: st.DrawFn) -> ContactSpiral:
     return ContactSpiral(n=n, x=x, b=b, l=l, s=s, caps=draw(st.booleans()))
 
 
-@settings(max_examples=1000, deadline=None)
+@settings(max_examples=300, deadline=None)
 @given(spirals())
 def test_closed_forms(p: ContactSpiral) -> None:
     path = p.path()
@@ -33,7 +33,7 @@ def test_closed_forms(p: ContactSpiral) -> None:
     assert sum(isinstance(s, Arc) for s in path.segments) == 2 * p.n + 2 + 2 * p.caps
 
 
-@settings(max_examples=500, deadline=None)
+@settings(max_examples=200, deadline=None)
 @given(spirals())
 def test_turns_run_into_each_other_without_a_corner(p: ContactSpiral) -> None:
     segments = p.path().segments
@@ -45,7 +45,7 @@ def test_turns_run_into_each_other_without_a_corner(p: ContactSpiral) -> None:
         assert not set(sharp) & set(range(1, len(segments) - 2))
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=120, deadline=None)
 @given(spirals())
 def test_neighbouring_turns_are_one_pitch_apart(p: ContactSpiral) -> None:
     # Along a ray straight down from the bottom centre the turns are bottom arcs only: their radii are one pitch apart.

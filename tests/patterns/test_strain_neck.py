@@ -15,7 +15,7 @@ from skinfab.patterns.strain_neck import StrainNeck
 GOOD = {"l1": 15, "l2": 40, "l3": 32, "b1": 2, "b2": 12}
 
 
-@settings(max_examples=500, deadline=None)
+@settings(max_examples=200, deadline=None)
 @given(patterns("strain-neck"))
 def test_closed_forms(p: StrainNeck) -> None:
     path, beside = p.path(), (p.b2 - p.b1) / 2
@@ -24,7 +24,7 @@ def test_closed_forms(p: StrainNeck) -> None:
     np.testing.assert_allclose([path.start, path.end], [[0, 0], [0, p.b1]], atol=1e-9)
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=120, deadline=None)
 @given(patterns("strain-neck"))
 def test_lines_and_arcs_take_turns_without_a_corner(p: StrainNeck) -> None:
     segments = p.path().segments
