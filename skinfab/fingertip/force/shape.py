@@ -1,0 +1,178 @@
+"""Sphere, cylinder or cuboid, from the four contacts of one grasp; where that is not clear enough, grasp again.
+
+Published: contact points and normals as they are, 24 numbers, into a 24-50-3 network. They change with every turn of the
+object. Here: how badly the best sphere, cylinder and cuboid miss the contacts, three numbers that do not.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from skinfab.errors import InputError
+from skinfab.fingertip.force.fits import FITS
+from skinfab.fingertip.force.grasp import FINGERS, SHAPES, Grasp, Touches, touches
+from skinfab.fingertip.force.network import Network, fit_network
+from skinfab.fingertip.saved import load_model, save_model
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+#: Less than this is no answer but a reason to grasp again: the paper's.
+CONFIDENCE = 0.9
+#: Grasps of one object after which the likeliest shape is said, however unclear it is.
+MOST_GRASPS = 4
+#: Hidden sigmoids: the paper's, and what three features need (docs/force.md).
+PUBLISHED_HIDDEN, HIDDEN = 50, 3
+#: Weight decay of each: what serves its own features best.
+PUBLISHED_DECAY, DECAY = 3e-3, 1e-3
+#: A misfit is no smaller: exact contacts would have none, and no logarithm.
+_LEAST_MISFIT = 1e-3
+
+KIND, VERSION = "force shape", 1
+
+
+def raw_features(found: Touches) -> FloatArray:
+    """(24,) contact points (mm) and normals, finger after finger, in the hand's frame: the paper's."""
+    return np.concatenate([found.point.ravel(), found.normal.ravel()])
+
+
+def pose_free_features(found: Touches) -> FloatArray:
+    """(17,) numbers that no turn or shift of the object changes: what the normals' products, spans and lines say."""
+    P, N = found.point, found.normal
+    products = np.sort(np.abs(N @ N.T)[np.triu_indices(FINGERS, 1)])
+    across = np.eye(3) - N[:, :, None] * N[:, None, :]
+    # Where nearly parallel normals leave the meeting point open it is the nearest to the contacts' middle.
+    middle = P.mean(axis=0)
+    meet = middle + np.linalg.lstsq(across.sum(axis=0), np.einsum("kij,kj->i", across, P - middle), rcond=1e-3)[0]
+    off, far = np.linalg.norm(np.einsum("kij,kj->ki", across, meet - P), axis=1), np.linalg.norm(P - meet, axis=1)
+    around = np.sort(np.linalg.norm(P - middle, axis=1))
+    return np.concatenate([products, np.linalg.svd(N, compute_uv=False), [off.mean(), off.max(), far.std() / far.mean()], around])
+
+
+def misfit_features(found: Touches) -> FloatArray:
+    """(3,) logarithms of how badly the best sphere, cylinder and cuboid miss the contacts."""
+    return np.log([max(FITS[shape](found.point, found.normal).misfit, _LEAST_MISFIT) for shape in SHAPES])
+
+
+FEATURES: dict[str, Callable[[Touches], FloatArray]] = {
+    "published": raw_features,
+    "pose-free": pose_free_features,
+    "misfits": misfit_features,
+}
+
+
+@dataclass(frozen=True, eq=False)
+class ShapeModel:
+    """A network over one kind of features.
+
+    Parameters
+    ----------
+    features : str
+        One of `FEATURES`.
+    network : Network
+    facts : mapping
+        What it was learned from and how good it was.
+    """
+
+    features: str
+    network: Network
+    facts: dict[str, Any]
+
+    def probability(self, found: Sequence[Touches]) -> FloatArray:
+        """(n, 3) of each grasp being of each of `SHAPES`."""
+        return self.network.probability(features_of(found, self.features))
+
+    def save(self, path: str | Path) -> None:
+        """Write it as arrays and JSON."""
+        net = self.network
+        arrays = {"mean": net.mean, "scale": net.scale, "hidden": net.hidden, "output": net.output}
+        facts = {**self.facts, "features": self.features, "shapes": list(SHAPES)}
+        save_model(path, kind=KIND, version=VERSION, facts=facts, arrays=arrays)
+
+    @classmethod
+    def load(cls, path: str | Path) -> ShapeModel:
+        """Read what `save` wrote.
+
+        Raises
+        ------
+        InputError
+            It is no such file, damaged, or of other shapes or features.
+        """
+        saved = load_model(path, kind=KIND, version=VERSION)
+        facts = dict(saved.facts)
+        try:
+            features, shapes = facts.pop("features"), facts.pop("shapes")
+            network = Network(*(saved.arrays[name] for name in ("mean", "scale", "hidden", "output")))
+        except (KeyError, AttributeError, TypeError, ValueError) as fault:
+            raise InputError(f"{path} lacks a part of a model of shapes ({fault}); train it again") from fault
+        if features not in FEATURES or shapes != list(SHAPES) or network.output.shape[1] != len(SHAPES):
+            raise InputError(f"{path} is a model of {shapes} by {features!r} features, which are not known here; train it again")
+        return cls(features, network, facts)
+
+
+def features_of(found: Sequence[Touches], features: str) -> FloatArray:
+    """(n, d) of many grasps."""
+    return np.array([FEATURES[features](each) for each in found])
+
+
+def fit_shapes(X: FloatArray, y: IntArray, features: str, *, seed: int = 0) -> Network:
+    """The network for features (n, d) and shapes (n,), numbers into `SHAPES`; the published ones get the published network."""
+    hidden, decay = (PUBLISHED_HIDDEN, PUBLISHED_DECAY) if features == "published" else (HIDDEN, DECAY)
+    return fit_network(X, y, classes=len(SHAPES), hidden=hidden, decay=decay, seed=seed)
+
+
+@dataclass(frozen=True)
+class Decision:
+    """What is said of an object.
+
+    Parameters
+    ----------
+    shape : str
+        The likeliest.
+    confidence : float
+    grasps : int
+        So many it took.
+    sure : bool
+        False where even the last grasp left it unclear.
+    """
+
+    shape: str
+    confidence: float
+    grasps: int
+    sure: bool
+
+
+def decide(model: ShapeModel, grasps: Sequence[Grasp], *, confidence: float = CONFIDENCE) -> Decision:
+    """Grasp after grasp of one object until one shape is likely enough: their probabilities are multiplied.
+
+    A grasp whose contacts are faulty says nothing.
+
+    Raises
+    ------
+    InputError
+        There is no grasp, or all are faulty.
+    """
+    weight, taken = np.zeros(len(SHAPES)), 0
+    probability = np.full(len(SHAPES), 1 / len(SHAPES))
+    faults = []
+    for each in grasps:
+        found = touches(each)
+        if found.fault:
+            faults.append(found.fault)
+            continue
+        taken += 1
+        weight = weight + np.log(np.maximum(model.probability([found])[0], np.finfo(float).tiny))
+        probability = np.exp(weight - weight.max())
+        probability /= probability.sum()
+        if probability.max() >= confidence:
+            break
+    if not taken:
+        raise InputError(f"no grasp can be read: {'; '.join(faults) or 'there is none'}; grasp again")
+    best = int(probability.argmax())
+    return Decision(SHAPES[best], float(probability[best]), taken, bool(probability[best] >= confidence))

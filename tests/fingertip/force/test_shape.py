@@ -1,0 +1,81 @@
+"""Shapes of new objects, grasped at any turn: told by misfits, hardly by raw contacts; and models that come back as they were."""
+
+import numpy as np
+import pytest
+
+from skinfab.errors import InputError
+from skinfab.fingertip.force.grasp import LEARNED, NEW, SHAPES, Touches, simulate_grasp, touches
+from skinfab.fingertip.force.shape import FEATURES, ShapeModel, decide, features_of, fit_shapes
+from skinfab.fingertip.saved import save_model
+
+
+def grasped(solids, per: int, seed: int) -> tuple[list[Touches], np.ndarray]:
+    rng = np.random.default_rng(seed)
+    found = [(touches(simulate_grasp(solid, seed=rng)), SHAPES.index(solid.shape)) for solid in solids for _ in range(per)]
+    return [each for each, _ in found], np.array([shape for _, shape in found])
+
+
+@pytest.fixture(scope="module")
+def learned() -> tuple[list[Touches], np.ndarray]:
+    return grasped(LEARNED, 15, 0)
+
+
+@pytest.fixture(scope="module")
+def new() -> tuple[list[Touches], np.ndarray]:
+    return grasped(NEW, 30, 1)
+
+
+@pytest.fixture(scope="module")
+def model(learned: tuple) -> ShapeModel:
+    return ShapeModel("misfits", fit_shapes(features_of(learned[0], "misfits"), learned[1], "misfits"), {"seed": 0})
+
+
+def accuracy(features: str, learned: tuple, new: tuple) -> float:
+    net = fit_shapes(features_of(learned[0], features), learned[1], features)
+    return float((net.probability(features_of(new[0], features)).argmax(axis=1) == new[1]).mean())
+
+
+def test_misfits_tell_new_objects_and_raw_contacts_do_not(learned: tuple, new: tuple) -> None:
+    found = {features: accuracy(features, learned, new) for features in FEATURES}
+    assert found["misfits"] > 0.87 and found["pose-free"] > 0.8 and found["published"] < 0.7
+
+
+def test_what_is_sure_is_right_more_often(model: ShapeModel, new: tuple) -> None:
+    out = model.probability(new[0])
+    right, sure = out.argmax(axis=1) == new[1], out.max(axis=1) >= 0.9
+    assert right[sure].mean() > right.mean() and sure.mean() > 0.5
+
+
+def test_grasping_again_makes_it_surer(model: ShapeModel) -> None:
+    rng = np.random.default_rng(5)
+    asked = [(solid.shape, [simulate_grasp(solid, seed=rng) for _ in range(4)]) for solid in NEW for _ in range(10)]
+    said = [(shape, decide(model, grasps[:1]), decide(model, grasps)) for shape, grasps in asked]
+    once, often = (np.mean([shape == each[k].shape for shape, *each in said]) for k in (0, 1))
+    assert often >= once and often > 0.92
+    assert any(again.grasps > 1 for _, _, again in said) and all(again.grasps == 1 for _, first, again in said if first.sure)
+
+
+def test_a_model_comes_back_as_it_was(model: ShapeModel, new: tuple, tmp_path) -> None:
+    model.save(tmp_path / "model.npz")
+    back = ShapeModel.load(tmp_path / "model.npz")
+    np.testing.assert_array_equal(back.probability(new[0][:5]), model.probability(new[0][:5]))
+    assert back.facts["seed"] == 0
+
+
+def test_models_that_are_none(tmp_path) -> None:
+    save_model(tmp_path / "a.npz", kind="force shape", facts={"features": "misfits", "shapes": list(SHAPES)}, arrays={})
+    with pytest.raises(InputError, match="lacks a part"):
+        ShapeModel.load(tmp_path / "a.npz")
+    arrays = {"mean": np.zeros(1), "scale": np.ones(1), "hidden": np.zeros((2, 1)), "output": np.zeros((2, 3))}
+    save_model(tmp_path / "b.npz", kind="force shape", facts={"features": "smell", "shapes": list(SHAPES)}, arrays=arrays)
+    with pytest.raises(InputError, match="smell"):
+        ShapeModel.load(tmp_path / "b.npz")
+
+
+def test_no_grasp_is_no_decision(model: ShapeModel) -> None:
+    with pytest.raises(InputError, match="there is none"):
+        decide(model, [])
+    grasp = simulate_grasp(NEW[0], seed=1)
+    grasp.force[0, 2] = 0.0
+    with pytest.raises(InputError, match="finger 3: no contact"):
+        decide(model, [grasp])
