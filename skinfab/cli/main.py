@@ -36,6 +36,7 @@ COMMANDS = {
     "replay": "a recorded log through the same code as live data",
     "control": "a robot's joint follows a human's, both read by strain sensors",
     "contact": "find contacts in the readings of a skin",
+    "nail": "what a bare fingertip touches, by shaking its nail",
     "force": "a six-axis force/torque fingertip: contacts, textures, centre of gravity, shapes",
     "gui": "see the object, its flat skin and the sensors, and move them",
     "bench": "measure the project beside its peers: time against distortion",

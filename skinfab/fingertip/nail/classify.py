@@ -151,13 +151,13 @@ class NailModel:
     def gate(self) -> float:
         """Distance from `at_rest` that is contact: midway between the farthest trial without and the nearest with it."""
         without, touching = self._from_rest
-        return -math.inf if self.at_rest is None else (without.max() + touching.min(initial=without.max())) / 2
+        return -math.inf if self.at_rest is None else float(without.max() + touching.min()) / 2
 
     @cached_property
     def gate_is_safe(self) -> bool:
         """Was every trial with contact farther from rest than every one without?"""
         without, touching = self._from_rest
-        return self.at_rest is not None and bool(without.max() < touching.min(initial=math.inf))
+        return self.at_rest is not None and bool(without.max() < touching.min())
 
     @cached_property
     def _from_rest(self) -> tuple[FloatArray, FloatArray]:

@@ -1,0 +1,67 @@
+"""The chart of window lengths: accuracy over the window, accuracy over the latency, and the errors of direction."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from skinfab.bench.charts import png
+from skinfab.files import atomic_write
+
+#: Told apart without red and green, and in print.
+_STYLES = {
+    "improved": ("#0b6e4f", "o-"),
+    "published, one window": ("#b5451b", "s-"),
+    "published, mode of ten": ("#b5451b", "^--"),
+}
+_DPI = 150
+
+
+def draw(table: Sequence[Mapping[str, Any]], path: Path) -> None:
+    """Write the chart as PNG; what `skinfab nail run` does is ringed."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(13.2, 4.2), dpi=_DPI, layout="constrained")
+    FigureCanvasAgg(figure)
+    figure.suptitle("Twelve edges: how long one must look (simulated participants)", fontsize=10)
+    window, latency, angle = figure.subplots(1, 3)
+    for method, (colour, style) in _STYLES.items():
+        rows = [row for row in table if row["method"] == method]
+        if not rows:
+            continue
+        own = [1000 * row["samples"] / 1400 for row in rows]
+        for axes, x in ((window, own), (latency, [row["latency_ms"] for row in rows])):
+            below = [row["percent"] - row["low"] for row in rows]
+            above = [row["high"] - row["percent"] for row in rows]
+            axes.errorbar(
+                x, [row["percent"] for row in rows], [below, above], fmt=style, color=colour, ms=4, lw=1, elinewidth=0.6, label=method
+            )
+        angle.plot([row["latency_ms"] for row in rows], [row["angle_deg"] for row in rows], style, color=colour, ms=4, lw=1, label=method)
+        if method == "improved":
+            weighted = [row["weighted_angle_deg"] for row in rows]
+            angle.plot(
+                [row["latency_ms"] for row in rows], weighted, "o:", color=colour, mfc="white", ms=4, lw=1, label="weighted by probability"
+            )
+    default = next((row for row in table if row["default"]), None)
+    if default is not None:
+        for axes, x, y in (
+            (window, 1000 * default["samples"] / 1400, default["percent"]),
+            (latency, default["latency_ms"], default["percent"]),
+            (angle, default["latency_ms"], default["angle_deg"]),
+        ):
+            axes.plot(x, y, "o", ms=13, mfc="none", mec="#555555", mew=1.4, label="the default")
+    for axes, words in (
+        (window, "one window, ms"),
+        (latency, "all readings needed and computing, ms"),
+        (angle, "all readings needed and computing, ms"),
+    ):
+        axes.set(xscale="log", xlabel=words)
+        axes.xaxis.set_major_formatter("{x:g}")
+        axes.grid(True, which="both", lw=0.3, alpha=0.6)
+    window.set_ylabel("right, % (95 % interval over participants)")
+    angle.set(ylabel="mean error of the edge's direction, degrees", ylim=(0, None))
+    window.legend(fontsize=7, loc="lower right")
+    angle.legend(fontsize=7, loc="lower left")
+    atomic_write(path, png(figure))

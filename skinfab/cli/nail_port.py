@@ -1,0 +1,119 @@
+"""What a port sends, decided as it comes, with how long each decision took."""
+
+from __future__ import annotations
+
+import math
+import signal
+import time
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from skinfab.fingertip.nail.classify import NailModel
+    from skinfab.fingertip.nail.histogram_model import HistogramModel
+    from skinfab.fingertip.nail.live import Told
+    from skinfab.fingertip.nail.regress import Regression
+
+#: How long to wait for a frame before looking whether time is up, s.
+_WAIT_S = 0.2
+#: A contact is said when so many decisions in a row agree: one in between two patterns is no news.
+_AGREE = 2
+#: Edges of the histogram of latencies, ms.
+_EDGES_MS = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0)
+
+
+def watch_port(
+    port: str,
+    model: NailModel | HistogramModel,
+    regression: Regression | None,
+    *,
+    samples: int,
+    every: int,
+    baud: int | None,
+    seconds: float | None,
+    quiet: bool,
+) -> tuple[list[Told], dict[str, Any]]:
+    """Decide on what a port sends until Ctrl-C, or for a while; what is touched is printed as it changes.
+
+    Raises
+    ------
+    InputError
+        The port cannot be read, or what it sends is not what the model learned from.
+    """
+    from skinfab.fingertip.nail.live import NailWatch
+    from skinfab.readout.serial_port import BAUD, SerialPort
+    from skinfab.readout.source import HostClock
+
+    told: list[Told] = []
+    latency: list[float] = []
+    speaker = _Speaker(quiet)
+    with SerialPort(port, baud=baud or BAUD) as source:
+        watch = NailWatch(model, source.stream, samples=samples, every=every, regression=regression)
+        clock, end = HostClock(), time.monotonic() + (seconds or math.inf)
+        frames = 0
+        try:
+            while (left := end - time.monotonic()) > 0:
+                if (frame := source.read(min(left, _WAIT_S))) is None:
+                    continue
+                frames += 1
+                if (made := watch.step(frame)) is not None:
+                    latency.append(1000 * (clock.now() - frame.host_time))
+                    told.append(made)
+                    speaker.hear(made)
+        except KeyboardInterrupt:
+            signal.setitimer(signal.ITIMER_REAL, 0)  # the way to end it: it has got through, and is not to come a second time
+        counts = source.counts
+        facts = {
+            "source": port,
+            "sha256": None,
+            "simulated": source.stream.simulated,
+            "frames": frames,
+            "lost": max(watch.lost, counts.lost),
+            "window_readings": watch.samples,
+            "latency_ms": latency_facts(latency),
+            "notes": [f"{counts.bad} packets were damaged"] * bool(counts.bad),
+        }
+    return told, facts
+
+
+def latency_facts(latency_ms: list[float]) -> dict[str, Any] | None:
+    """Median, 99 %, worst, and counts between edges; None of nothing.
+
+    Examples
+    --------
+    >>> latency_facts([0.15, 0.3, 3.0])["worst"]
+    3.0
+    """
+    import numpy as np
+
+    if not latency_ms:
+        return None
+    each = np.array(latency_ms)
+    counts = np.histogram(each, [0.0, *_EDGES_MS, np.inf])[0]
+    quantiles = {name: float(np.quantile(each, part)) for name, part in (("median", 0.5), ("p99", 0.99), ("worst", 1.0))}
+    return {**quantiles, "histogram": {"edges": [0.0, *_EDGES_MS], "counts": counts.tolist()}}
+
+
+class _Speaker:
+    """Prints what is touched when it changes and stays for a moment."""
+
+    def __init__(self, quiet: bool) -> None:
+        self._quiet, self._said, self._last, self._agree = quiet, "", "", 0
+
+    def hear(self, told: Told) -> None:
+        """Take a decision; print it where it is news."""
+        if self._quiet or (decision := told.decision) is None:
+            return
+        self._agree = self._agree + 1 if decision.label == self._last else 1
+        self._last = decision.label
+        if self._agree < _AGREE or decision.label == self._said:
+            return
+        self._said = decision.label
+        found = decision.continuous
+        parts = [f"{told.time_s:9.3f} s  {decision.label}"]
+        if decision.contact:
+            parts.append(f"confidence {decision.confidence:.2f}")
+            parts += [f"{found.angle_deg:.0f} deg"] * (found.angle_deg == found.angle_deg)
+            parts += [f"at {found.x_mm:+.1f}, {found.y_mm:+.1f} mm"] * (found.x_mm == found.x_mm)
+            parts += [f"{found.force_n:.2f} N"] * (found.force_n == found.force_n)
+            parts += ["like nothing learned"] * decision.strange
+        print("  ".join(parts), flush=True)

@@ -1,0 +1,220 @@
+"""`skinfab nail run MODEL.npz LOG|--port PORT -o DIR`: what is touched, in a log or as it comes."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+from collections import Counter
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from skinfab.cli import steps
+from skinfab.cli.record import baud
+
+if TYPE_CHECKING:
+    from skinfab.fingertip.nail.live import Told
+
+FILES = ("decisions.csv", "nail.png", "result.json")
+
+
+def add_options(p: argparse.ArgumentParser) -> None:
+    """The model, what it is applied to, and where the results go."""
+    p.add_argument("model", metavar="MODEL.npz", type=Path, help="from skinfab nail train")
+    p.add_argument("log", metavar="LOG", type=Path, nargs="?", help="CSV, MCAP, ROS bag or recording of the channels Ax Ay Az Gx Gy Gz")
+    p.add_argument("--port", metavar="PORT", help="such as /dev/ttyACM0, until Ctrl-C, instead of a log")
+    p.add_argument(
+        "--window", metavar="N", type=steps.counting, default=33, help="readings a decision is made on, from 8 up (default: 33, 24 ms)"
+    )
+    p.add_argument("--every", metavar="N", type=steps.counting, default=8, help="a decision after so many readings (default: 8)")
+    p.add_argument("--seconds", metavar="S", type=steps.positive, help="of a port: end after so long (default: at Ctrl-C)")
+    p.add_argument("--baud", metavar="N", type=baud, help="of a port (default: 921600)")
+    p.add_argument("--labels", metavar="LABELS.csv", type=Path, help="of a log: what was touched when, to count how much is right")
+    p.add_argument("-o", "--output", metavar="DIR", type=Path, required=True, help="folder for the decisions, the result and the figure")
+    p.add_argument("--json", action="store_true", help="print the result as one JSON object and nothing else")
+    p.set_defaults(run=run)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Decide, write, and say what came out."""
+    from skinfab.files import require_apart
+    from skinfab.fingertip.nail.model_file import load_nail
+
+    if (args.log is None) == (args.port is None):
+        args.wrong_usage("give a LOG or --port PORT, one of them")
+    for name, other in (("labels", "log"), ("seconds", "port"), ("baud", "port")):
+        if getattr(args, name) is not None and getattr(args, other) is None:
+            args.wrong_usage(f"--{name} is for a {other}")
+    require_apart(args.output, FILES, [path for path in (args.model, args.log, args.labels) if path is not None])
+    content = load_nail(args.model)
+    names = list(content.model.names)
+    if args.port:
+        told, facts = _from_port(args, content)
+    else:
+        told, facts = _from_log(args, content)
+    from skinfab.errors import InputError
+
+    decided = [each for each in told if each.decision is not None]
+    if not decided:
+        raise InputError(
+            f"{args.port or args.log}: nothing could be decided in {len(told)} windows; there must be {facts['window_readings']} readings "
+            "in a row, of two channels at least"
+        )
+    result = _facts(args, content, told, facts)
+    _write(args.output, told, names, result)
+    if args.json:
+        print(json.dumps(result, allow_nan=False))
+        return 0
+    steps.say(result["notes"])
+    for line in _lines(result):
+        print(line)
+    print(f"{args.output}: {', '.join(FILES)}")
+    return 0
+
+
+def _from_log(args: argparse.Namespace, content: Any) -> tuple[list[Told], dict[str, Any]]:
+    from skinfab.fingertip.nail.live import decide_log
+    from skinfab.readout.logs.log import read_log
+
+    log = read_log(args.log)
+    told, lost = decide_log(content.model, log.recording, samples=args.window, every=args.every, regression=content.regression)
+    samples = getattr(content.model, "samples", args.window)
+    facts: dict[str, Any] = {
+        "source": log.file,
+        "sha256": log.sha256,
+        "simulated": log.recording.stream.simulated,
+        "frames": len(log.recording),
+        "lost": lost,
+        "window_readings": samples,
+        "notes": list(log.notes),
+    }
+    if args.labels:
+        facts |= _judged(args.labels, log.file, told, samples, content.model.rate_hz)
+    return told, facts
+
+
+def _judged(path: Path, file: str, told: Sequence[Told], samples: int, rate_hz: float) -> dict[str, Any]:
+    """How many of the trials of this log are right: what most of the windows that lie wholly in a trial say."""
+    from skinfab.errors import InputError
+    from skinfab.fingertip.nail.labels import read_labels
+    from skinfab.rates import wilson
+
+    labels, _ = read_labels(path)
+    own = [each for each in labels if each.log == file]
+    if not own:
+        raise InputError(f"{path} has no row of {file}; give the table that goes with the log")
+    right = of = 0
+    for each in own:
+        # Of the last reading: half a reading to spare, so that a window that just fits does.
+        first, last = each.start_s + (samples - 1.5) / rate_hz, each.end_s - 0.5 / rate_hz
+        said = Counter(one.decision.label for one in told if one.decision and first <= one.time_s <= last)
+        if said:
+            of += 1
+            right += said.most_common(1)[0][0] == each.label
+    rate = wilson(right, of)
+    trials = {"trials": of, "right": right, "accuracy": {"value": rate.value if of else None, "low": rate.low, "high": rate.high}}
+    return {"labels": {"file": path.name, **trials}}
+
+
+def _from_port(args: argparse.Namespace, content: Any) -> tuple[list[Told], dict[str, Any]]:
+    from skinfab.cli.nail_port import watch_port
+
+    return watch_port(
+        args.port,
+        content.model,
+        content.regression,
+        samples=args.window,
+        every=args.every,
+        baud=args.baud,
+        seconds=args.seconds,
+        quiet=args.json,
+    )
+
+
+def _facts(args: argparse.Namespace, content: Any, told: Sequence[Told], facts: dict[str, Any]) -> dict[str, Any]:
+    import numpy as np
+
+    decisions = [each.decision for each in told if each.decision is not None]
+    notes = list(facts.pop("notes"))
+    if missing := max(each.missing for each in decisions):
+        part = sum(each.missing > 0 for each in decisions) / len(decisions)
+        notes.append(
+            f"up to {missing} of the six channels had too few readings, in {part:.1%} of the windows, which were decided without them"
+        )
+    left_out = float(np.mean([each.left_out for each in told]))
+    if left_out > 0.01:
+        notes.append(f"{left_out:.1%} of the readings are missing or saturated and were left out")
+    if (strange := sum(each.strange for each in decisions) / len(decisions)) > 0.2:
+        notes.append(
+            f"{strange:.0%} of the windows are like nothing the model learned from; is it the same finger, and the sensor where it was?"
+        )
+    if facts["lost"]:
+        notes.append(f"{facts['lost']} frames were lost on the way")
+    drives = np.array([each.drive_hz for each in told])
+    known = drives[np.isfinite(drives)]
+    return {
+        **facts,
+        "simulated": bool(facts["simulated"] or content.made_from.get("simulated")),
+        "model": args.model.name,
+        "window_s": facts["window_readings"] / content.model.rate_hz,
+        "windows": len(told),
+        "undecided": len(told) - len(decisions),
+        "touched": dict(Counter(each.label for each in decisions).most_common()),
+        "drive_hz": {"low": float(known.min()), "high": float(known.max())} if len(known) else None,
+        "strange": strange,
+        "left_out": left_out,
+        "notes": notes,
+    }
+
+
+def _write(output: Path, told: Sequence[Told], names: list[str], result: dict[str, Any]) -> None:
+    import csv
+    import io
+
+    from skinfab.files import atomic_write
+    from skinfab.fingertip.nail.figure import draw_run
+    from skinfab.staging import staged_folder
+
+    text = io.StringIO()
+    text.write("# simulated: true\n" if result["simulated"] else "")
+    rows = csv.writer(text, lineterminator="\n")
+    numbers = ("angle_deg", "x_mm", "y_mm", "force_n")
+    rows.writerow(["time_s", "label", "confidence", "contact", "strange", *numbers, "missing", "drive_hz", "left_out"])
+    for each in told:
+        d = each.decision
+        if d is None:
+            rows.writerow([f"{each.time_s:.6f}", *[""] * 9, _cell(each.drive_hz), _cell(each.left_out)])
+            continue
+        found = [_cell(getattr(d.continuous, name)) for name in numbers]
+        flags = [int(d.contact), int(d.strange)]
+        rows.writerow(
+            [f"{each.time_s:.6f}", d.label, _cell(d.confidence), *flags, *found, d.missing, _cell(each.drive_hz), _cell(each.left_out)]
+        )
+    with staged_folder(output) as folder:
+        atomic_write(folder / "decisions.csv", text.getvalue())
+        atomic_write(folder / "result.json", json.dumps(result, indent=1, allow_nan=False) + "\n")
+        title = f"{result['source']}: a decision on {result['window_readings']} readings ({1000 * result['window_s']:.0f} ms)"
+        draw_run(told, names, folder / "nail.png", title=title, simulated=result["simulated"])
+
+
+def _cell(value: float) -> str:
+    return "" if math.isnan(value) else f"{value:.5g}"
+
+
+def _lines(result: dict[str, Any]) -> list[str]:
+    made = " (simulated)" if result["simulated"] else ""
+    touched = ", ".join(f"{name} {100 * count / result['windows']:.0f} %" for name, count in result["touched"].items())
+    lines = [f"{result['source']}{made}: {result['windows']} windows of {1000 * result['window_s']:.1f} ms: {touched}"]
+    if drive := result["drive_hz"]:
+        lines.append(f"the motor turned at {drive['low']:.1f} to {drive['high']:.1f} Hz")
+    if labels := result.get("labels"):
+        rate = labels["accuracy"]
+        share = "-" if rate["value"] is None else f"{100 * rate['value']:.1f} % [{100 * rate['low']:.1f}, {100 * rate['high']:.1f}]"
+        lines.append(f"{labels['right']} of {labels['trials']} trials are right: {share}")
+    if latency := result.get("latency_ms"):
+        lines.append(
+            f"from the last reading's arrival to the decision: {latency['median']:.2f} ms (median), {latency['p99']:.2f} (99 %), "
+            f"{latency['worst']:.2f} (worst)"
+        )
+    return lines

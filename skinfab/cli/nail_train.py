@@ -1,0 +1,160 @@
+"""`skinfab nail train LABELS.csv -o MODEL.npz`: learn from logs with labels."""
+
+from __future__ import annotations
+
+import argparse
+import hashlib
+import json
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from skinfab.cli import steps
+
+if TYPE_CHECKING:
+    from skinfab.fingertip.nail.labels import Trial
+    from skinfab.fingertip.nail.train import Held
+
+METHODS = ("improved", "published")
+
+
+def add_options(p: argparse.ArgumentParser) -> None:
+    """LABELS, how to learn from them, and where the model goes."""
+    p.add_argument("labels", metavar="LABELS.csv", type=Path, help="which log holds what from when to when (docs/nail.md)")
+    p.add_argument("--method", choices=METHODS, default="improved", help="phasors (improved, the default) or angle histograms (published)")
+    p.add_argument(
+        "--participant", metavar="NAME", help="learn from this one's trials (needed where there are several); all: from everybody's"
+    )
+    p.add_argument("--drive", metavar="HZ", type=steps.positive, help="the motor's frequency (default: found in each trial)")
+    p.add_argument("-o", "--output", metavar="MODEL.npz", type=steps.named(".npz"), required=True, help="the model")
+    p.add_argument("--json", action="store_true", help="print the result as one JSON object and nothing else")
+    p.set_defaults(run=run)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Learn, judge on what was held out, write, and say how good it is."""
+    import numpy as np
+
+    from skinfab.errors import InputError
+    from skinfab.files import require_place
+    from skinfab.fingertip.nail.labels import read_trials
+    from skinfab.fingertip.nail.model_file import NailFile, save_nail
+    from skinfab.fingertip.nail.regress import Regression, learnable, targets_of
+    from skinfab.fingertip.nail.train import WINDOW, judge, prepare, splits_of
+
+    require_place(args.output)
+    if args.output.exists() and args.output.samefile(args.labels):
+        raise InputError(f"{args.output} is read and would be replaced; give another -o")
+    every, simulated, notes = read_trials(args.labels)
+    trials, across = _chosen(every, args.participant)
+    made = prepare(trials, drive_hz=args.drive)
+    splits = splits_of(trials, across=across)
+    published = args.method == "published"
+    held = {} if published else {f"{WINDOW} readings": judge(made, splits, samples=WINDOW, across=across)}
+    held["whole trials"] = judge(made, splits, samples=None, published=published, across=across)
+    rows = _learned_rows(trials, across)
+    notes += made.notes
+    regression = None
+    if published:
+        model: Any = made.fit_published(rows)
+    else:
+        targets, more = learnable(targets_of([trials[k].label for k in rows]))
+        notes += more
+        model = made.fit(rows)
+        regression = Regression(model, targets)
+        if model.at_rest is not None and not model.gate_is_safe:
+            notes.append("some trials with contact are as much like rest as those without; contact will be mistaken at times: press harder")
+    result = {
+        "simulated": simulated,
+        "method": args.method,
+        "labels": {"file": args.labels.name, "sha256": hashlib.sha256(args.labels.read_bytes()).hexdigest()},
+        "participants": list(dict.fromkeys(each.label.participant for each in trials)),
+        "trials": len(rows),
+        "classes": list(made.names),
+        "rate_hz": made.rate_hz,
+        "drive_hz": {"low": float(made.drive_hz.min()), "median": float(np.median(made.drive_hz)), "high": float(made.drive_hz.max())},
+        "held_out": {"by": _split_by(trials, across), **{name: _facts(each) for name, each in held.items()}},
+        "notes": notes,
+    }
+    kept = {key: result[key] for key in ("simulated", "labels", "participants", "trials", "held_out")}
+    save_nail(args.output, NailFile(model, regression, kept))
+    result["file"] = str(args.output)
+    if args.json:
+        print(json.dumps(result, allow_nan=False))
+        return 0
+    steps.say(notes)
+    for line in _lines(result, held):
+        print(line)
+    return 0
+
+
+def _chosen(every: list[Trial], name: str | None) -> tuple[list[Trial], bool]:
+    """The trials that are learned from, and whether they are of several participants."""
+    from skinfab.errors import InputError
+
+    there = list(dict.fromkeys(each.label.participant for each in every))
+    if name is None and len(there) > 1:
+        raise InputError(
+            f"the trials are of {len(there)} participants ({', '.join(there)}), and fingers differ; choose with --participant, or all"
+        )
+    if name is None or name == "all":
+        return every, len(there) > 1
+    chosen = [each for each in every if each.label.participant == name]
+    if not chosen:
+        raise InputError(f"there is no participant {name!r}; there are {', '.join(map(repr, there))}")
+    return chosen, False
+
+
+def _learned_rows(trials: list[Trial], across: bool) -> Any:
+    """The trials that the model in the file is learned from: never those of the test part."""
+    import numpy as np
+
+    test = np.array([each.label.part == "test" for each in trials])
+    return np.flatnonzero(~test) if test.any() and not test.all() and not across else np.arange(len(trials))
+
+
+def _split_by(trials: list[Trial], across: bool) -> str:
+    if across:
+        return "participant"
+    parts = {each.label.part for each in trials}
+    return "test part of the table" if "test" in parts and len(parts) > 1 else "trial, in folds"
+
+
+def _facts(held: Held) -> dict[str, Any]:
+    from skinfab.fingertip.confusion import grouped_accuracy
+
+    rate = grouped_accuracy(held.right, held.groups)
+    return {
+        **held.confusion.facts(),
+        "accuracy": {"value": rate.value, "low": rate.low, "high": rate.high},
+        "mean_angle_error_deg": _mean(held.angle_deg),
+        "mean_place_error_mm": _mean(held.place_mm),
+    }
+
+
+def _mean(values: Any) -> float | None:
+    import numpy as np
+
+    known = values[np.isfinite(values)]
+    return float(known.mean()) if len(known) else None
+
+
+def _lines(result: dict[str, Any], held: dict[str, Held]) -> list[str]:
+    made = " (simulated)" if result["simulated"] else ""
+    who = ", ".join(each for each in result["participants"] if each) or "nobody named"
+    drive = result["drive_hz"]
+    lines = [
+        f"{result['method']}{made}: {result['trials']} trials of {who}, {len(result['classes'])} classes; the motor turns at "
+        f"{drive['median']:.1f} Hz ({drive['low']:.1f} to {drive['high']:.1f})",
+        f"held out by {result['held_out']['by']}:",
+    ]
+    for name in held:
+        facts = result["held_out"][name]
+        rate = facts["accuracy"]
+        line = f"  {name}: {100 * rate['value']:.1f} % right [{100 * rate['low']:.1f}, {100 * rate['high']:.1f}]"
+        for key, unit in (("mean_angle_error_deg", "degrees"), ("mean_place_error_mm", "mm")):
+            if facts[key] is not None and math.isfinite(facts[key]):
+                line += f", off by {facts[key]:.1f} {unit} in the mean"
+        lines.append(line)
+    lines.append(f"wrote {result['file']}")
+    return lines

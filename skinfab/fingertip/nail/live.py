@@ -1,0 +1,200 @@
+"""Decisions as readings come, one every few readings; a log and a port go through the same code.
+
+The motor's frequency is followed in the readings of the last 0.18 s. Lost frames leave a gap in their place, so that what comes after them
+keeps its phase; readings that are missing or saturated are left out of the fit.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from skinfab.errors import InputError
+from skinfab.fingertip.nail.classify import NailModel
+from skinfab.fingertip.nail.histogram_model import HistogramModel
+from skinfab.fingertip.nail.labels import CHANNELS, rate_of, six_channels
+from skinfab.fingertip.nail.phasors import SHORTEST, find_drive
+from skinfab.fingertip.nail.reader import Decision, Reader
+from skinfab.fingertip.nail.regress import Continuous, Regression
+from skinfab.readout.frame import Frame, Recording, Stream
+
+FloatArray = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
+
+#: The motor's frequency is found in so many readings, and again after so many.
+_FOLLOWED, _AGAIN = 256, 64
+#: Most readings of a window.
+_LONGEST = 16384
+#: A log's rate may differ so much from the model's: a phasor's channels answer by frequency, not by rate, but a window's length is told
+#: in readings.
+_RATE = 0.05
+
+
+@dataclass(frozen=True)
+class Told:
+    """A decision and when it was made.
+
+    Parameters
+    ----------
+    time_s : float
+        Device time of the window's last reading.
+    decision : Decision or None
+        None where the window could not be decided.
+    drive_hz : float
+    left_out : float
+        Part of the window's readings that are missing or saturated.
+    """
+
+    time_s: float
+    decision: Decision | None
+    drive_hz: float
+    left_out: float
+
+
+class _Published:
+    """The published machine, read as `Reader` is."""
+
+    def __init__(self, model: HistogramModel) -> None:
+        self._model = model
+
+    def decide(self, window: FloatArray, *, drive_hz: float | None = None) -> Decision:
+        """Decide on a window of the length it was trained for; it knows no frequency and no probability."""
+        name = self._model.names[int(self._model.decide(window[None])[0])]
+        return Decision(name, math.nan, name != "none", False, Continuous())
+
+
+class NailWatch:
+    """Decides on what a stream sends.
+
+    Parameters
+    ----------
+    model : NailModel or HistogramModel
+    stream : Stream
+    samples : int
+        Readings of a window; of the published model always those it was trained for.
+    every : int
+        A decision after so many readings.
+    regression : Regression, optional
+    rate_hz : float, optional
+        Readings a second, where the stream does not say.
+
+    Raises
+    ------
+    InputError
+        The stream has none of the channels, its rate is not the model's, or the window is too short or too long.
+
+    Attributes
+    ----------
+    lost : int
+        Frames that were missing by the device's count.
+    """
+
+    def __init__(
+        self,
+        model: NailModel | HistogramModel,
+        stream: Stream,
+        *,
+        samples: int,
+        every: int,
+        regression: Regression | None = None,
+        rate_hz: float | None = None,
+    ) -> None:
+        rate = rate_hz or stream.rate_hz
+        if not rate:
+            raise InputError(f"stream {stream.name} does not say how many frames come a second; let the device say so")
+        if abs(rate - model.rate_hz) > _RATE * model.rate_hz:
+            raise InputError(
+                f"stream {stream.name} has {rate:.4g} readings a second and the model learned from {model.rate_hz:.4g}; train one anew"
+            )
+        if not any(name in stream.names for name in CHANNELS):
+            raise InputError(f"stream {stream.name} has none of the channels {', '.join(CHANNELS)}; it has {', '.join(stream.names)}")
+        self._published = isinstance(model, HistogramModel)
+        self.samples = model.samples if isinstance(model, HistogramModel) else samples
+        if not SHORTEST <= self.samples <= _LONGEST:
+            raise InputError(f"a window of {self.samples} readings is none; give {SHORTEST} to {_LONGEST}")
+        self.every, self.lost = max(every, 1), 0
+        self._rate = rate
+        self._columns = [stream.names.index(name) if name in stream.names else -1 for name in CHANNELS]
+        self._reader = _Published(model) if isinstance(model, HistogramModel) else Reader(model, self.samples, regression=regression)
+        self.drive_hz = math.nan if isinstance(model, HistogramModel) else model.drive_hz
+        # Twice as long as needed, written twice: so the newest readings always lie in one piece.
+        self._size = max(self.samples, _FOLLOWED)
+        self._rows = np.full((2 * self._size, 6), np.nan)
+        self._count = self._since = 0
+        self._sequence: int | None = None
+
+    def step(self, frame: Frame) -> Told | None:
+        """Take a frame; a decision where it is time for one."""
+        usable = frame.valid if self._published else frame.valid & ~frame.saturated
+        values = np.where(usable, frame.values, np.nan)
+        return self.take(np.array([values[k] if k >= 0 else math.nan for k in self._columns]), frame.sequence, frame.device_time)
+
+    def take(self, row: FloatArray, sequence: int, time_s: float) -> Told | None:
+        """Take a reading of the six channels, NaN where there is none, with its place in the device's count."""
+        if self._sequence is not None:
+            gap = sequence - self._sequence - 1
+            if gap < 0:  # the device began anew, so that phases before it mean nothing
+                self._count = self._since = 0
+                gap = 0
+            self.lost += gap
+            for _ in range(min(gap, self._size)):
+                self._put(math.nan)
+        self._sequence = sequence
+        self._put(row)
+        if self._count < self.samples or self._since < self.every:
+            return None
+        self._since = 0
+        return self._decided(time_s)
+
+    def _put(self, row: FloatArray | float) -> None:
+        at = self._count % self._size
+        self._rows[at] = self._rows[at + self._size] = row
+        self._count += 1
+        self._since += 1
+        if self._count % _AGAIN == 0 and self._count >= _FOLLOWED and not self._published:
+            self._follow()
+
+    def _newest(self, count: int) -> FloatArray:
+        end = (self._count - 1) % self._size + 1 + self._size
+        return self._rows[end - count : end]
+
+    def _follow(self) -> None:
+        newest = self._newest(_FOLLOWED)
+        if np.isfinite(newest).any(axis=1).mean() < 0.5:
+            return  # mostly a gap: what was known before is better
+        found = float(find_drive(newest[None], self._rate)[0])
+        if math.isfinite(found):
+            self.drive_hz = found
+
+    def _decided(self, time_s: float) -> Told:
+        window = self._newest(self.samples)
+        used = [k for k, column in enumerate(self._columns) if column >= 0]
+        left_out = float(np.isnan(window[:, used]).mean())
+        try:
+            decision = self._reader.decide(window, drive_hz=self.drive_hz)
+        except InputError:  # too little in this window; the next one may do
+            decision = None
+        return Told(time_s, decision, self.drive_hz, left_out)
+
+
+def decide_log(
+    model: NailModel | HistogramModel, recording: Recording, *, samples: int, every: int, regression: Regression | None = None
+) -> tuple[list[Told], int]:
+    """Decisions on a log, and how many frames were missing in it.
+
+    Raises
+    ------
+    InputError
+        As `NailWatch`.
+    """
+    watch = NailWatch(model, recording.stream, samples=samples, every=every, regression=regression, rate_hz=rate_of(recording))
+    values, saturated = six_channels(recording)
+    if not isinstance(model, HistogramModel):
+        values = np.where(saturated, np.nan, values)
+    time = recording.device_time - recording.device_time[0]
+    rows = zip(values, recording.sequence.tolist(), time.tolist(), strict=True)
+    told = [made for row, sequence, at in rows if (made := watch.take(row, sequence, at)) is not None]
+    return told, watch.lost

@@ -1,0 +1,252 @@
+"""From labelled trials to a model, and how good it is on trials that it has not seen.
+
+Trials of one participant are a group each: a participant's own model is judged on trials that were held out (the ``test`` part of the
+table where it has one, else five folds). Where participants are put together, whole participants are held out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from skinfab.errors import InputError
+from skinfab.fingertip.confusion import Confusion
+from skinfab.fingertip.nail.classify import NailModel, fit_phasors
+from skinfab.fingertip.nail.histogram_model import HistogramModel, fit_histograms
+from skinfab.fingertip.nail.labels import CHANNELS, NOTHING, Trial
+from skinfab.fingertip.nail.model_file import class_names
+from skinfab.fingertip.nail.phasors import BLOCK, FIND_SHORTEST, ComplexArray, find_drive, lock_in, reference_of, turned_phasors
+from skinfab.fingertip.nail.published import modes
+from skinfab.fingertip.nail.regress import Regression, angle_apart, continuous_of, learnable, targets_of
+from skinfab.fingertip.splits import Split, group_folds, leave_one_out
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+#: Readings of a window that is decided on: four turns of the motor, 24 ms. Longer ones are hardly better (docs/nail.md).
+WINDOW = 33
+#: The paper's window, for the published method.
+PUBLISHED_WINDOW = 1024
+FOLDS = 5
+#: Channels that are saturated in more of the readings are told of.
+_SATURATED = 0.01
+#: Fewer trials of a class are told of: with two, accuracy is 10 % lower than with five.
+_FEW = 5
+
+
+@dataclass(frozen=True, eq=False)
+class Prepared:
+    """Trials, ready to be learned from.
+
+    Parameters
+    ----------
+    trials : tuple of n Trial
+    names : tuple of str
+        The classes.
+    classes : (n,) int
+    drive : (n, 6) complex
+        Phasors of each whole trial, turned alike.
+    noise : (n, 6) float
+    drive_hz : (n,) float
+    rate_hz : float
+    notes : tuple of str
+    """
+
+    trials: tuple[Trial, ...]
+    names: tuple[str, ...]
+    classes: IntArray
+    drive: ComplexArray
+    noise: FloatArray
+    drive_hz: FloatArray
+    rate_hz: float
+    notes: tuple[str, ...]
+
+    def fit(self, rows: IntArray) -> NailModel:
+        """The model of some of the trials."""
+        return fit_phasors(
+            self.names,
+            self.classes[rows],
+            self.drive[rows],
+            self.noise[rows],
+            rate_hz=self.rate_hz,
+            drive_hz=float(np.median(self.drive_hz[rows])),
+        )
+
+    def fit_published(self, rows: IntArray) -> HistogramModel:
+        """The published model of some of the trials, each cut to the paper's 1024 readings, or to the shortest trial."""
+        samples = min(PUBLISHED_WINDOW, *(len(each.values) for each in self.trials))
+        windows = np.array([self.trials[k].values[:samples] for k in rows])
+        return fit_histograms(self.names, self.classes[rows], windows, rate_hz=self.rate_hz)
+
+
+@dataclass(frozen=True, eq=False)
+class Held:
+    """How good models are on trials that were held out.
+
+    Parameters
+    ----------
+    confusion : Confusion
+    groups : tuple of n
+        Which cases are not independent of each other.
+    right : (n,) bool
+    angle_deg, place_mm : (n,) float
+        Errors of the regression against the labels; NaN where there is none.
+    """
+
+    confusion: Confusion
+    groups: tuple[str, ...]
+    right: NDArray[np.bool_]
+    angle_deg: FloatArray
+    place_mm: FloatArray
+
+
+def prepare(trials: Sequence[Trial], *, drive_hz: float | None = None) -> Prepared:
+    """Phasors of trials.
+
+    Parameters
+    ----------
+    trials : sequence of Trial
+    drive_hz : float, optional
+        The motor's frequency; found in each trial where it is left out.
+
+    Raises
+    ------
+    InputError
+        The sampling rates differ, a trial is too short for its motor's frequency to be found, or nothing vibrates in it.
+    """
+    rates = np.array([each.rate_hz for each in trials])
+    rate = float(np.median(rates))
+    if np.abs(rates - rate).max() > 0.01 * rate:
+        raise InputError(f"the logs have {rates.min():.4g} to {rates.max():.4g} readings a second; record all of them at one rate")
+    masked = [np.where(each.saturated, np.nan, each.values) for each in trials]
+    drives = np.array([_drive(each, values, rate) if drive_hz is None else drive_hz for each, values in zip(trials, masked, strict=True)])
+    first = np.array([lock_in(v[None, :BLOCK], rate, f).drive[0] for v, f in zip(masked, drives, strict=True)])
+    reference = reference_of(first)
+    each = [turned_phasors(v[None], rate, f, reference) for v, f in zip(masked, drives, strict=True)]
+    names = class_names([trial.label.label for trial in trials])
+    classes = np.array([names.index(trial.label.label) for trial in trials])
+    drive, noise = np.concatenate([one for one, _ in each]), np.concatenate([one for _, one in each])
+    return Prepared(tuple(trials), names, classes, drive, noise, drives, rate, tuple(_notes(trials, names, classes, drive)))
+
+
+def _drive(trial: Trial, values: FloatArray, rate: float) -> float:
+    where = f"{trial.label.log}, {trial.label.start_s:.3f} to {trial.label.end_s:.3f} s"
+    if len(values) < FIND_SHORTEST:
+        raise InputError(f"{where}: {len(values)} readings are too few to find the motor's frequency in; give it with --drive")
+    found = float(find_drive(values[None], rate)[0])
+    if not np.isfinite(found):
+        raise InputError(f"{where}: nothing vibrates; was the motor on?")
+    return found
+
+
+def _notes(trials: Sequence[Trial], names: tuple[str, ...], classes: IntArray, drive: ComplexArray) -> list[str]:
+    notes = []
+    there = np.isfinite(drive).all(axis=0)
+    if not there.all():
+        gone = ", ".join(np.array(CHANNELS)[~there])
+        notes.append(f"channel {gone} has too few readings in some trials, and the model does without")
+    saturated = np.concatenate([each.saturated for each in trials]).mean(axis=0)
+    for name, part in zip(CHANNELS, saturated.tolist(), strict=True):
+        if part > _SATURATED:
+            notes.append(
+                f"channel {name} is at the end of its range in {part:.1%} of the readings, which are left out; choose a wider range"
+            )
+    counts = np.bincount(classes, minlength=len(names))
+    if (few := int(counts.min())) < _FEW:
+        notes.append(f"class {names[int(counts.argmin())]!r} has {few} {'trial' if few == 1 else 'trials'}; five a class are better by far")
+    if NOTHING not in names:
+        notes.append(f"no trial is without contact (labelled {NOTHING!r}), so every window will be taken for a contact; record some")
+    return notes
+
+
+def splits_of(trials: Sequence[Trial], *, across: bool) -> list[Split]:
+    """What is learned from and what is judged.
+
+    Parameters
+    ----------
+    trials : sequence of Trial
+    across : bool
+        Hold out whole participants.
+
+    Raises
+    ------
+    InputError
+        There is too little to hold anything out.
+    """
+    if across:
+        return leave_one_out([each.label.participant for each in trials])
+    test = np.array([each.label.part == "test" for each in trials])
+    if test.any() and not test.all():
+        return [(np.flatnonzero(~test), np.flatnonzero(test))]
+    labels = [each.label.label for each in trials]
+    least = min(labels.count(name) for name in set(labels))
+    if least < 2:
+        raise InputError("a class has a single trial, so that none can be held out to say how good the model is; record another one")
+    return group_folds(_groups(trials), k=min(FOLDS, least), strata=labels)
+
+
+def _groups(trials: Sequence[Trial]) -> list[str]:
+    """What is held out as a whole: trials of one name, or each row for itself where they have none."""
+    return [f"{each.label.participant}/{each.label.trial or k}" for k, each in enumerate(trials)]
+
+
+def judge(made: Prepared, splits: Sequence[Split], *, samples: int | None = WINDOW, published: bool = False, across: bool = False) -> Held:
+    """Decide on what was held out.
+
+    Parameters
+    ----------
+    made : Prepared
+    splits : sequence of (train, test)
+    samples : int, optional
+        Readings of the window, from the trial's first; all of it where it is left out. Of the published method, which knows one length,
+        the whole trial in windows, and the mode of what is said of them.
+    published : bool
+        By the published method.
+    across : bool
+        Cases of one participant are not independent.
+    """
+    truth, said, groups = [], [], []
+    errors = []
+    for train, test in splits:
+        if published:
+            decided = [_by_histograms(made.fit_published(train), made.trials[k].values) for k in test]
+            estimates = np.full((len(test), 2), np.nan)
+        else:
+            decided, estimates = _by_phasors(made, train, test, samples)
+        truth += [made.names[made.classes[k]] for k in test]
+        said += [made.names[k] for k in decided]
+        groups += [made.trials[k].label.participant if across else _groups(made.trials)[k] for k in test]
+        errors.append(estimates)
+    both = np.concatenate(errors)
+    right = np.array([a == b for a, b in zip(truth, said, strict=True)])
+    return Held(Confusion.of(truth, said, made.names), tuple(groups), right, both[:, 0], both[:, 1])
+
+
+def _by_histograms(model: HistogramModel, values: FloatArray) -> int:
+    count = len(values) // model.samples
+    return int(modes(model.decide(values[: count * model.samples].reshape(count, model.samples, 6))[None])[0])
+
+
+def _by_phasors(made: Prepared, train: IntArray, test: IntArray, samples: int | None) -> tuple[list[int], FloatArray]:
+    model = made.fit(train)
+    labels = [made.trials[k].label for k in train]
+    regression = Regression(model, learnable(targets_of(labels))[0])
+    decided, errors = [], np.full((len(test), 2), np.nan)
+    for row, k in enumerate(test):
+        trial = made.trials[k]
+        window = np.where(trial.saturated, np.nan, trial.values)[:samples]
+        drive, _ = turned_phasors(window[None], made.rate_hz, made.drive_hz[k], model.reference)
+        usable = model
+        if (gone := ~np.isfinite(drive[0]) & model.channels).any():
+            usable = model.without(gone)
+            drive, _ = turned_phasors(window[None], made.rate_hz, made.drive_hz[k], usable.reference)
+        own = regression if usable is model else Regression(usable, regression.targets)
+        decided.append(int(usable.decide_phasors(drive, len(window)).classes[0]))
+        target = targets_of([trial.label])[0]
+        found = own.estimate(usable.features(drive))[0]
+        errors[row, 0] = angle_apart(continuous_of(found).angle_deg, continuous_of(target).angle_deg)
+        errors[row, 1] = np.linalg.norm(found[2:4] - target[2:4])
+    return decided, errors
