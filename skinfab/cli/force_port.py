@@ -1,0 +1,172 @@
+"""Contacts and unintended motions in what a port sends, told as they come, with how long each decision took."""
+
+from __future__ import annotations
+
+import math
+import signal
+import time
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from skinfab.cli import steps
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from skinfab.fingertip.force.logs import WrenchLog
+    from skinfab.fingertip.force.motion import Limits, Motion
+    from skinfab.readout.frame import Stream
+
+#: How long to wait for a frame before looking whether time is up, s.
+_WAIT_S = 0.2
+#: A contact that lasts is told again this often, s.
+_AGAIN_S = 1.0
+_MILLION = 1e6
+
+
+@dataclass(frozen=True, eq=False)
+class Watched:
+    """What a port sent.
+
+    Parameters
+    ----------
+    log : WrenchLog
+        All samples.
+    motions : tuple of Motion
+        In order; one that lasted at the end has no end.
+    latency_s : (n,) float
+        Of each sample: from when its last byte was read until it was decided on.
+    simulated : bool
+    notes : tuple of str
+    """
+
+    log: WrenchLog
+    motions: tuple[Motion, ...]
+    latency_s: NDArray[np.float64]
+    simulated: bool
+    notes: tuple[str, ...]
+
+    @property
+    def latency(self) -> dict[str, float]:
+        """Of the decisions, microseconds: the median, the 99 % quantile, and the worst."""
+        import numpy as np
+
+        middle, most, worst = (_MILLION * np.quantile(self.latency_s, (0.5, 0.99, 1.0))).tolist()
+        return {"median_us": middle, "p99_us": most, "worst_us": worst}
+
+
+def watch_port(
+    port: str,
+    *,
+    limits: Limits,
+    seconds: float | None = None,
+    baud: int | None = None,
+    least_force: float | None = None,
+    quiet: bool = False,
+) -> Watched:
+    """Watch a port until Ctrl-C, or for a while, and tell contacts and motions as they come.
+
+    Parameters
+    ----------
+    port : str
+    limits : Limits
+        Of `skinfab.fingertip.force.motion`.
+    seconds : float, optional
+    baud : int, optional
+    least_force : float, optional
+        N; weaker is no contact.
+    quiet : bool
+        Tell nothing.
+
+    Raises
+    ------
+    InputError
+        The port cannot be opened, sends nothing, does not send the six components, or does not say how many samples come a second.
+    """
+    import numpy as np
+
+    from skinfab.errors import InputError
+    from skinfab.fingertip.force.contact import LEAST_FORCE_N
+    from skinfab.fingertip.force.logs import WrenchLog
+    from skinfab.fingertip.force.motion import MotionWatch
+    from skinfab.readout.serial_port import BAUD, SerialPort
+    from skinfab.readout.source import HostClock
+
+    rows: list[tuple[float, ...]] = []
+    latency: list[float] = []
+    motions: dict[float, Motion] = {}
+    with SerialPort(port, baud=baud or BAUD) as source:
+        stream = source.stream
+        columns = _columns(stream, port)
+        if not stream.rate_hz:
+            raise InputError(f"{port} does not say how many samples come a second; let the device describe its stream (docs/readout.md)")
+        least = LEAST_FORCE_N if least_force is None else least_force
+        watch = MotionWatch(limits, rate_hz=stream.rate_hz, least_force=least)
+        teller = _Teller(least, quiet)
+        clock, end = HostClock(), time.monotonic() + (seconds or math.inf)
+        missing = 0
+        try:
+            while (left := end - time.monotonic()) > 0:
+                frame = source.read(min(left, _WAIT_S))
+                if frame is None:
+                    continue
+                if not frame.valid[columns].all() or frame.saturated[columns].any():
+                    missing += 1
+                    continue
+                wrench = frame.values[columns]
+                new = watch.step(frame.device_time, wrench[:3], wrench[3:])
+                latency.append(clock.now() - frame.host_time)
+                rows.append((frame.device_time, *wrench.tolist()))
+                for each in new:
+                    motions[each.told] = each
+                teller.step(frame.device_time, wrench, new)
+        except KeyboardInterrupt:
+            signal.setitimer(signal.ITIMER_REAL, 0)  # the way to end it: it has got through, and is not to come a second time
+        counts = source.counts
+    if not rows:
+        raise InputError(f"{port} sent no whole sample; is the sensor running?")
+    table = np.array(rows)
+    notes = [
+        f"{count} samples were {how}" for how, count in (("lost", counts.lost), ("damaged", counts.bad), ("late", counts.late)) if count
+    ]
+    notes += [f"{missing} samples lacked a component or were saturated, and were passed over"] * bool(missing)
+    log = WrenchLog(stream.name, table[:, 0], table[:, 1:4], table[:, 4:], simulated=stream.simulated)
+    return Watched(log, tuple(motions.values()), np.array(latency), stream.simulated, tuple(notes))
+
+
+def _columns(stream: Stream, port: str) -> list[int]:
+    from skinfab.errors import InputError
+    from skinfab.fingertip.force.wrench import WRENCH
+
+    if missing := [name for name in WRENCH if name not in stream.names]:
+        raise InputError(f"{port} sends no {', '.join(missing)} but {', '.join(stream.names)}; call the six components {', '.join(WRENCH)}")
+    return [stream.index(name) for name in WRENCH]
+
+
+class _Teller:
+    """Says where the finger is touched, when it is let go, and what moves."""
+
+    def __init__(self, least_force: float, quiet: bool) -> None:
+        self._least, self._quiet = least_force, quiet
+        self._touching, self._next = False, -math.inf
+
+    def step(self, now: float, wrench: Any, new: list[Motion]) -> None:
+        if self._quiet:
+            return
+        for each in new:
+            steps.say(
+                [f"{now:.2f} s, {each.kind} {'began' if each.lasting else f'ended after {each.end - each.start:.2f} s'}"], kind="motion"
+            )
+        from skinfab.fingertip.force.contact import locate
+
+        force = math.sqrt(float(wrench[:3] @ wrench[:3]))
+        if force >= self._least and now >= self._next:
+            found = locate(wrench[None, :3], wrench[None, 3:], least_force=self._least)
+            x, y, z = found.point[0].tolist()
+            word = f"; {found.words(0)}" if found.flags[0] else ""
+            steps.say([f"{now:.2f} s, {force:.2f} N at {x:.1f}, {y:.1f}, {z:.1f} mm{word}"], kind="contact")
+            self._next, self._touching = now + _AGAIN_S, True
+        elif force < self._least / 2 and self._touching:
+            steps.say([f"{now:.2f} s, let go"], kind="contact")
+            self._touching, self._next = False, -math.inf

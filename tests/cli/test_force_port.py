@@ -1,0 +1,71 @@
+"""What a port sends is watched as a log is: the same motions, and each decision within the sample's own time."""
+
+import numpy as np
+import pytest
+
+from skinfab.cli.force_port import watch_port
+from skinfab.errors import InputError
+from skinfab.fingertip.force.motion import Limits, MotionWatch, find_motions
+from skinfab.fingertip.force.motion_simulator import grasp_log
+from skinfab.fingertip.force.wrench import force_stream
+from skinfab.readout.frame import Channel, Recording, Stream
+from skinfab.readout.packets import FRAME_64
+from skinfab.readout.pty_server import PtyServer
+
+LIMITS = Limits(friction_deg=31)
+
+
+def recording(seconds: float = 12.0) -> Recording:
+    log, _ = grasp_log(seed=3, episodes=4)
+    n = min(round(seconds * 200), len(log))
+    values = np.column_stack([log.force, log.moment])[:n]
+    return Recording.of_values(force_stream("fingertip", 200.0, simulated=True), values, device_time=np.arange(n) / 200)
+
+
+def test_a_port_and_a_log_give_the_same_motions(capsys: pytest.CaptureFixture[str]) -> None:
+    made = recording()
+    with PtyServer(made.stream, made, rate_hz=0, kind=FRAME_64) as device:
+        watched = watch_port(str(device.path), limits=LIMITS, seconds=4)
+    n = len(watched.log)
+    assert n == len(made) and watched.simulated and watched.log.simulated
+    found = find_motions(made.device_time, made.values[:, :3], made.values[:, 3:], MotionWatch(LIMITS, rate_hz=200))
+    assert found and [(e.kind, round(e.start, 3)) for e in watched.motions] == [(e.kind, round(e.start, 3)) for e in found]
+    said = capsys.readouterr().err
+    assert "contact: " in said and f"motion: {found[0].told:.2f} s, {found[0].kind} began" in said
+
+
+def test_latency_is_of_every_sample_and_less_than_its_time() -> None:
+    made = recording(1.0)
+    with PtyServer(made.stream, made) as device:
+        watched = watch_port(str(device.path), limits=LIMITS, seconds=2, quiet=True)
+    assert len(watched.latency_s) == len(watched.log) == 200 and (watched.latency_s > 0).all()
+    assert 0 < watched.latency["median_us"] <= watched.latency["p99_us"] <= watched.latency["worst_us"]
+
+
+def test_a_sample_without_a_component_is_passed_over_and_counted() -> None:
+    made = recording(0.5)
+    made.valid[10:13, 4] = False
+    with PtyServer(made.stream, made, rate_hz=0) as device:
+        watched = watch_port(str(device.path), limits=LIMITS, seconds=1, quiet=True)
+    assert len(watched.log) == 97 and "3 samples lacked a component" in watched.notes[0]
+
+
+@pytest.mark.parametrize(
+    ("stream", "says"),
+    [
+        (Stream("skin", (Channel("S1"),), 100.0), "sends no Fx, Fy"),
+        (Stream("tip", tuple(Channel(name) for name in ("Fx", "Fy", "Fz", "Mx", "My", "Mz")), 0.0), "how many samples come a second"),
+    ],
+)
+def test_a_port_of_something_else_is_refused(stream: Stream, says: str) -> None:
+    values = np.ones((20, len(stream.channels)))
+    made = Recording.of_values(stream, values, device_time=np.arange(20) / 100)
+    with PtyServer(stream, made, rate_hz=100) as device, pytest.raises(InputError, match=says):
+        watch_port(str(device.path), limits=LIMITS, seconds=1)
+
+
+def test_a_silent_port_is_told() -> None:
+    made = recording(0.1)
+    made.valid[:] = False
+    with PtyServer(made.stream, made) as device, pytest.raises(InputError, match="no whole sample"):
+        watch_port(str(device.path), limits=LIMITS, seconds=0.5)
