@@ -1,4 +1,4 @@
-"""The still part of the flat view: faces, outlines, seams and their labels, grid, rulers, colour bar."""
+"""The still part of the flat view: faces, outlines, seams, names of pieces, grid, rulers, colour bar."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from gui.shades import CHECK_MM, HEAT_RANGE, heat
 from gui.theme import Theme, rgb
-from gui.view2d.pen import Pen
+from gui.view2d.pen import Box, Pen
 from gui.view2d.plane import Plane
 from gui.view2d.sheet import Sheet
 from skinfab.skin import SeamMarks
@@ -20,10 +20,10 @@ Float = NDArray[np.float64]
 RULER_PX = 24
 #: What the colour bar takes at the right.
 BAR_PX = 64
-_NOTCH_PX = 6.0
-_LABEL_PX = 11.0
+NOTCH_PX = 6.0
+LABEL_PX = 11.0
 #: A seam shorter than this on the screen has no label: it would hide what it names.
-_LEAST_SEAM_PX = 26.0
+LEAST_SEAM_PX = 26.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +68,7 @@ def paint_faces(ground: Ground, face: NDArray[np.int32], picture: NDArray[np.uin
 
 
 def paint_lines(ground: Ground, pen: Pen) -> None:
-    """Grid, outlines, seams and their labels."""
+    """Grid, outlines, seams and their notches."""
     if ground.grid:
         _grid(ground, pen)
     sheet, plane, theme = ground.sheet, ground.plane, ground.theme
@@ -83,30 +83,23 @@ def paint_lines(ground: Ground, pen: Pen) -> None:
     if ground.marks is not None:
         locked = np.isin(edges.mesh, sheet.mesh.topology.edge_ids(ground.marks.locked))
         pen.lines(list(plane.to_px(edges.ends[locked])), theme.locked, 3.0)
-    for px, side in zip(sides, sheet.sides, strict=True):
+    for side in sheet.sides:
         if not side.label:
             continue
         at = plane.to_px(side.notch + sheet.offset[side.piece])
-        pen.line([at, at + side.inward * _NOTCH_PX * pen.ratio], theme.seam, 1.8)
-        if _extent(px) >= _LEAST_SEAM_PX * pen.ratio:
-            pen.text(at + side.inward * (_NOTCH_PX + _LABEL_PX) * pen.ratio, side.label, theme.seam, size=_LABEL_PX, ground=theme.view)
+        pen.line([at, at + side.inward * NOTCH_PX * pen.ratio], theme.seam, 1.8)
 
 
-def paint_names(ground: Ground, pen: Pen) -> None:
-    """The pieces' names and sizes, over their upper left corners."""
+def paint_names(ground: Ground, pen: Pen) -> list[Box]:
+    """The pieces' names and sizes, over their upper left corners; where they are."""
+    boxes = []
     for piece, offset in zip(ground.sheet.pieces, ground.sheet.offset, strict=True):
         width, height = piece.size
         top = ground.plane.to_px(np.array([piece.UV[:, 0].min(), piece.UV[:, 1].max()]) + offset)
         words = f"{piece.id}  {width:.0f} x {height:.0f} mm"
-        pen.text(
-            top + np.array([0.0, 4.0]) * pen.ratio,
-            words,
-            ground.theme.text,
-            size=11,
-            anchor=(0.0, 0.0),
-            ground=ground.theme.view,
-            bold=True,
-        )
+        at, theme = top + np.array([0.0, 4.0]) * pen.ratio, ground.theme
+        boxes.append(pen.text(at, words, theme.text, size=11, anchor=(0.0, 0.0), ground=theme.view, bold=True))
+    return boxes
 
 
 def paint_frame(ground: Ground, pen: Pen) -> None:
@@ -114,10 +107,6 @@ def paint_frame(ground: Ground, pen: Pen) -> None:
     _rulers(ground, pen)
     if ground.shading == "distortion":
         _colour_bar(ground, pen)
-
-
-def _extent(px: Float) -> float:
-    return float(np.ptp(px, axis=0).max())
 
 
 def _checker(ground: Ground, face: NDArray[np.int32], picture: NDArray[np.uint8]) -> None:

@@ -12,7 +12,7 @@ from gui.state.selection import Target
 from gui.theme import Theme
 from gui.view2d.lines import Lines
 from gui.view2d.live import Findings, words
-from gui.view2d.pen import Pen
+from gui.view2d.pen import Box, Pen
 from gui.view2d.plane import Plane
 from gui.view2d.sheet import Sheet
 from skinfab.placement.sensor import Sensor
@@ -68,8 +68,9 @@ class Marker:
     lines: Lines
     cased: bool = False
 
-    def sensors(self, sensors: Iterable[Sensor], findings: Findings, *, also_wrong: Iterable[str] = ()) -> None:
-        """Conductors as wide as their beads, in the colour of whether they fit, with their names."""
+    def sensors(self, sensors: Iterable[Sensor], findings: Findings, *, also_wrong: Iterable[str] = ()) -> list[Box]:
+        """Conductors as wide as their beads, in the colour of whether they fit, with their names; where the names are."""
+        names = []
         wrong = {*findings, *also_wrong}
         for sensor in sensors:
             px = self.plane.to_px(self.lines.of(sensor, self.sheet))
@@ -80,7 +81,8 @@ class Marker:
             self.pen.line(px, colour, width)
             if np.ptp(px, axis=0).max() >= _LEAST_NAMED_PX * self.pen.ratio:
                 middle = self.plane.to_px(self.lines.middle(sensor, self.sheet))
-                self.pen.text(middle, sensor.id, colour, size=11, ground=self.theme.view, bold=True)
+                names.append(self.pen.text(middle, sensor.id, colour, size=11, ground=self.theme.view, bold=True))
+        return names
 
     def selected(self, target: Target, sensors: Mapping[str, Sensor], *, handle: bool) -> None:
         """What is selected; one sensor alone has a handle."""

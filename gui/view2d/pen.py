@@ -105,6 +105,11 @@ class Pen:
         self._touch(box, 1.0)
         return box
 
+    def room(self, words: str, size: float, *, bold: bool = False) -> tuple[float, float]:
+        """Width and height of the box that `text` draws with a ground, pixels."""
+        height, width = self._letters.mask(words, max(round(size * self.ratio), 1), bold=bold).shape
+        return width + 6.0 * self.ratio, height + 4.0 * self.ratio
+
     def _print(self, mask: NDArray[np.uint8], left: int, top: int, colour: str) -> None:
         """Lay a mask over the picture, its corner at a column and a row; what is beyond the picture's ends is cut off."""
         rows, columns = mask.shape

@@ -18,6 +18,7 @@ from gui.view2d.background import BAR_PX, RULER_PX, Ground, paint_faces, paint_f
 from gui.view2d.fill import fill
 from gui.view2d.hands import Hands
 from gui.view2d.hit import REACH_PX, Hit2D, hit
+from gui.view2d.labels import Taken, paint_labels
 from gui.view2d.lines import Lines
 from gui.view2d.live import Live
 from gui.view2d.marking import HANDLE_PX, Marker, Shown
@@ -247,8 +248,13 @@ class View2D(ttk.Frame):
         paint_lines(ground, pen)
         marker = self._marker(pen, sheet)
         held = {s.id for s in self.hands.sensors}
-        marker.sensors([s for s in skin.sensors if s.id not in held], {k: v for k, v in self.live.findings.items() if k not in held})
-        paint_names(ground, pen)
+        lying = [s for s in skin.sensors if s.id not in held]
+        named = marker.sensors(lying, {k: v for k, v in self.live.findings.items() if k not in held})
+        taken = Taken(pen.width, pen.height, pen.ratio)
+        taken.lines(self.plane.to_px(self.lines.of(sensor, sheet)) for sensor in lying)
+        for box in (*named, *paint_names(ground, pen)):
+            taken.box(box)
+        paint_labels(ground, pen, self._triangles, taken)
         paint_frame(ground, pen)
 
     def _draw_moving(self, pen: Pen) -> None:
