@@ -1,5 +1,5 @@
 # Two commands do everything, their own set-up included: `make demo` and `make test`.
-.PHONY: demo test setup lint lock pictures
+.PHONY: demo test setup lint peers lock pictures
 
 PYTHON = .venv/bin/python
 
@@ -12,10 +12,13 @@ demo: setup
 test: export PYTHONDONTWRITEBYTECODE =
 test: export OMP_NUM_THREADS = 1
 test: export OPENBLAS_NUM_THREADS = 1
-test: lint
-	@for one in tests/setup_*.sh; do $$one || { [ -z "$$CI" ] && echo "test: going on without $$one; the tests that need it are skipped"; } || exit 1; done
+test: lint peers
 	@# Stealing leaves files whole but for a few: what the tests of a file share is made once. (loadgroup groups nothing with pytest 9.2 and xdist 3.8.)
 	$(PYTHON) -m pytest -q -W error -n 2 --dist worksteal --doctest-modules skinfab gcode calibration tests
+
+# Programs of others that tests compare with.
+peers: setup
+	@for one in tests/setup_*.sh; do $$one || { [ -z "$$CI" ] && echo "test: going on without $$one; the tests that need it are skipped"; } || exit 1; done
 
 lint: setup
 	$(PYTHON) -m ruff check .
