@@ -222,3 +222,9 @@ LINE_UNSURE_RAD = 0.17453292519943295  # 10 degrees
 
 #: Another direction explains a frame as well where it leaves less than so many variances of a reading more: a chance of one in seventy.
 LINE_RIVAL = 6.0
+
+#: Where (1 + nu) (1 - 2 nu) is less, the integral of an array's deflections is under a tenth of what it is in a soft foam, and noise.
+COMPRESSIBLE = 0.1
+
+#: An angle of force is none where a profile leaves more than this part unexplained: interpolation alone leaves up to a tenth.
+SPLIT_UNEXPLAINED = 0.25

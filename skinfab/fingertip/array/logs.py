@@ -1,0 +1,131 @@
+"""Logs of an array as deflections, with what is known of the truth."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from skinfab.errors import InputError
+from skinfab.fingertip.array.geometry import tactel_columns
+from skinfab.fingertip.array.simulator import deflection
+from skinfab.readout.frame import Recording
+
+FloatArray = NDArray[np.float64]
+
+#: What a log may say of the truth.
+TRUTH: tuple[str, ...] = ("axial_mm", "angle_deg", "force_n", "line_deg")
+#: The log begins untouched for so long, s; and so many frames at least.
+REST_S, REST_FRAMES = 1.0, 3
+#: A log whose tactels scatter by more than this in that time was touched then, as a part of the gap.
+RESTLESS = 5e-3
+
+
+@dataclass(frozen=True, eq=False)
+class ArrayLog:
+    """Deflections in a log.
+
+    Parameters
+    ----------
+    name : str
+    time : (n,) float, s
+    Z : (n, rings, stripes) float
+        Deflections; NaN where a tactel reads nothing, or is at the end of its range.
+    saturated : (n, rings, stripes) bool
+    truth : dict of (n,) float
+        By name: ``axial_mm``, ``angle_deg``, ``force_n``, ``line_deg``, those that the log has.
+    noise : float
+        Standard deviation of a reading at rest, as a part of the gap.
+    simulated : bool
+    sha256 : str
+    notes : tuple of str
+    """
+
+    name: str
+    time: FloatArray
+    Z: FloatArray
+    saturated: NDArray[np.bool_]
+    truth: dict[str, FloatArray]
+    noise: float
+    simulated: bool
+    sha256: str = ""
+    notes: tuple[str, ...] = ()
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Rings and stripes."""
+        return self.Z.shape[1], self.Z.shape[2]
+
+    def touched(self) -> NDArray[np.int64]:
+        """Frames of which the truth is known to be a contact.
+
+        Raises
+        ------
+        InputError
+            The log does not say where it was touched.
+        """
+        if missing := [name for name in ("axial_mm", "angle_deg", "force_n") if name not in self.truth]:
+            raise InputError(f"{self.name} has no column {', '.join(missing)}; to learn, a log must say where and how hard it was touched")
+        known = np.isfinite(self.truth["axial_mm"]) & np.isfinite(self.truth["angle_deg"]) & (self.truth["force_n"] > 0)
+        return np.flatnonzero(known)
+
+
+def read_array_log(path: str | Path) -> ArrayLog:
+    """Read a log of voltages that begins untouched.
+
+    Raises
+    ------
+    InputError
+        As `skinfab.readout.logs.log.read_log`; it has no array's channels; or it does not begin at rest.
+    """
+    from skinfab.readout.logs.log import read_log
+
+    log = read_log(path)
+    return of_recording(log.recording, name=log.file, sha256=log.sha256, notes=log.notes)
+
+
+def of_recording(recording: Recording, *, name: str, sha256: str = "", notes: tuple[str, ...] = ()) -> ArrayLog:
+    """A recording's voltages as deflections: V0 is the median of its first second.
+
+    Examples
+    --------
+    >>> from skinfab.fingertip.array.protocols import presses
+    >>> from skinfab.fingertip.array.simulator import Device
+    >>> log = of_recording(presses(Device(), 3), name="presses")
+    >>> log.shape, log.simulated, len(log.touched())
+    ((8, 8), True, 9)
+    """
+    shape, columns = tactel_columns(recording.stream)
+    time = recording.device_time - recording.device_time[0] if len(recording) else recording.device_time
+    rest = int(np.searchsorted(time, REST_S - 1e-9)) if len(time) else 0
+    if rest < REST_FRAMES:
+        raise InputError(f"{name} has {rest} frames in its first {REST_S:g} s; begin it untouched, with at least {REST_FRAMES} frames")
+    flat = columns.ravel()
+    valid, saturated = recording.valid[:, flat], recording.saturated[:, flat]
+    volts = np.where(valid & ~saturated, recording.values[:, flat], np.nan).reshape(len(time), *shape)
+    dead = ~np.isfinite(volts[:rest]).any(axis=0)
+    first = np.where(dead, 1.0, volts[:rest])  # a tactel that never reads has no rest; it stays NaN
+    rest_v = np.nanmedian(first, axis=0)
+    Z = np.where(dead, np.nan, deflection(volts, rest_v))
+    scatter = np.nanstd(np.where(dead, 0.0, Z[:rest]), axis=0)
+    if float(scatter.max()) > RESTLESS:
+        i, j = np.unravel_index(int(scatter.argmax()), shape)
+        raise InputError(
+            f"{name}: tactel r{i}s{j} moves by {100 * scatter.max():.2g} % of its gap in the first {REST_S:g} s; leave the array "
+            "untouched when a log begins"
+        )
+    said = list(notes)
+    if dead.any():
+        which = ", ".join(f"r{i}s{j}" for i, j in np.argwhere(dead)[:4])
+        said.append(f"{name}: {int(dead.sum())} tactels read nothing at rest and are left out: {which}; look at their wires")
+    alive = scatter[~dead]
+    noise = math.sqrt(float((alive**2).mean()) * rest / max(rest - 1, 1)) if alive.size else 0.0
+    truth: dict[str, FloatArray] = {
+        each: np.where(recording.valid[:, recording.stream.index(each)], recording.values[:, recording.stream.index(each)], np.nan)
+        for each in TRUTH
+        if each in recording.stream.names
+    }
+    return ArrayLog(name, time, Z, saturated.reshape(len(time), *shape), truth, noise, recording.stream.simulated, sha256, tuple(said))
