@@ -87,7 +87,7 @@ def watch_port(
     import numpy as np
 
     from skinfab.errors import InputError
-    from skinfab.fingertip.force.contact import LEAST_FORCE_N
+    from skinfab.fingertip.force.contact import LEAST_FORCE_N, locate
     from skinfab.fingertip.force.logs import WrenchLog
     from skinfab.fingertip.force.motion import MotionWatch
     from skinfab.readout.serial_port import BAUD, SerialPort
@@ -96,6 +96,7 @@ def watch_port(
     rows: list[tuple[float, ...]] = []
     latency: list[float] = []
     motions: dict[float, Motion] = {}
+    locate(np.array([[0.0, 0.0, -1.0]]), np.zeros((1, 3)))  # compiled now: the first sample of the port would wait a second for it
     with SerialPort(port, baud=baud or BAUD) as source:
         stream = source.stream
         columns = _columns(stream, port)

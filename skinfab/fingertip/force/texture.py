@@ -89,7 +89,10 @@ def sliding_part(log: WrenchLog, surface: Hemisphere | None = None) -> Slide:
     normal = locate(force[touching].mean(axis=0)[None], moment[touching].mean(axis=0)[None], surface).normal[0]
     along = slow @ normal
     inclination = np.arctan2(np.linalg.norm(slow - along[:, None] * normal, axis=1), along)
-    start, end = _longest(_slides(inclination, touching, round(_SMOOTH_S * rate)))
+    sliding = _slides(inclination, touching, round(_SMOOTH_S * rate))
+    if not sliding.any():
+        raise InputError(f"{log.name}: there is no tangential force; pull the material along")
+    start, end = _longest(sliding)
     edge = round(_EDGE_S * rate)
     start, end = start + edge, end - edge
     if end - start < round(_SMOOTH_S * rate):
@@ -97,8 +100,6 @@ def sliding_part(log: WrenchLog, surface: Hemisphere | None = None) -> Slide:
     part = slice(start, end)
     pull = force[part].mean(axis=0)
     pull -= (pull @ normal) * normal
-    if not np.linalg.norm(pull) > 0:
-        raise InputError(f"{log.name}: there is no tangential force; pull the material along")
     return Slide(force[part] @ (pull / np.linalg.norm(pull)), force[part] @ normal, inclination[part], rate, notes)
 
 
