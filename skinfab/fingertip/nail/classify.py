@@ -272,8 +272,8 @@ def fit_phasors(
     if len(plain.touched) < 2:
         raise InputError(f"{len(plain.touched)} class of contact is among the trials, and at least two are needed; record another one")
     rest, spare = _residuals(plain)
-    if spare == 0:
-        return plain
+    if spare == 0:  # how trials scatter is not known, nor then how sure one may be
+        return replace(plain, temperature=_TEMPERATURES[-1])
     made = replace(plain, shrinkage=float(ledoit_wolf_shrinkage(rest, assume_centered=True)))
     return replace(made, temperature=_temperature(made, seed))
 
@@ -293,7 +293,7 @@ def _temperature(model: NailModel, seed: int) -> float:
     rows = np.flatnonzero(np.isin(model.classes, model.touched))
     folds = min(_FOLDS, int(np.bincount(model.classes[rows])[model.touched].min()))
     if folds < 2:
-        return float(_TEMPERATURES[-1])
+        return _TEMPERATURES[-1]
     lost = np.zeros(len(_TEMPERATURES))
     for kept, held in group_folds(rows.tolist(), k=folds, strata=model.classes[rows].tolist(), seed=seed):
         part = replace(model, classes=model.classes[rows[kept]], drive=model.drive[rows[kept]])

@@ -175,23 +175,20 @@ def lock_in(values: FloatArray, rate_hz: float, drive_hz: float | FloatArray) ->
 
 
 def _with_gaps(A: FloatArray, values: FloatArray, there: BoolArray) -> tuple[FloatArray, FloatArray]:
-    """As the plain fit, channel by channel with the readings that each has: unknowns (n, 5, c), readings to spare (n, c)."""
-    n, _, channels = values.shape
-    x = np.full((n, 5, channels), np.nan)
-    left = np.zeros((n, channels))
-    known = np.where(there, values, 0.0)
-    for k in range(channels):
-        weighted = A * there[:, :, k, None]
-        normal = weighted.transpose(0, 2, 1) @ A
-        right = weighted.transpose(0, 2, 1) @ known[:, :, k, None]
-        count = there[:, :, k].sum(axis=1)
-        told = (count >= SHORTEST) & (np.linalg.eigvalsh(normal)[:, 0] > _TOLD_APART * count)
-        plain = ~told & (count >= 4) & (np.linalg.eigvalsh(normal[:, :3, :3])[:, 0] > _TOLD_APART * count)
-        x[told, :, k] = np.linalg.solve(normal[told], right[told])[..., 0]
-        x[plain, :3, k] = np.linalg.solve(normal[plain, :3, :3], right[plain, :3])[..., 0]
-        x[plain, 3:, k] = 0.0
-        left[:, k] = count - np.where(told, 5, 3)
-    return x, left
+    """As the plain fit, each channel with the readings that it has: unknowns (n, 5, c), readings to spare (n, c)."""
+    mask = there.swapaxes(1, 2)
+    kept = A[:, None] * mask[..., None]
+    normal = kept.swapaxes(2, 3) @ A[:, None]
+    right = kept.swapaxes(2, 3) @ np.where(there, values, 0.0).swapaxes(1, 2)[..., None]
+    count = mask.sum(axis=2)
+    told = (count >= SHORTEST) & (np.linalg.eigvalsh(normal)[..., 0] > _TOLD_APART * count)
+    x = np.full((*mask.shape[:2], 5), np.nan)
+    x[told] = np.linalg.solve(normal[told], right[told])[..., 0]
+    if not told.all():
+        plain = ~told & (count >= 4) & (np.linalg.eigvalsh(normal[..., :3, :3])[..., 0] > _TOLD_APART * count)
+        x[plain, :3] = np.linalg.solve(normal[plain][:, :3, :3], right[plain][:, :3])[..., 0]
+        x[plain, 3:] = 0.0
+    return x.swapaxes(1, 2), count - np.where(told, 5, 3)
 
 
 def reference_of(drive: ComplexArray) -> ComplexArray:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections import OrderedDict
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -99,7 +99,7 @@ class Reader:
             return self._decide(np.where(self._used, w @ blocks, 0.0))
         return self._with_gaps(window, drive_hz)
 
-    def _decide(self, drive: ComplexArray, missing: int = 0) -> Decision:
+    def _decide(self, drive: ComplexArray) -> Decision:
         along = drive @ self._conj
         turn = along.conj() / np.maximum(np.abs(along), 1e-300)
         mean = (drive * turn[:, None]).mean(axis=0)
@@ -114,23 +114,27 @@ class Reader:
         total = float(weight.sum())
         contact = self._rest is None or math.dist(x, self._rest) > self._gate
         if not contact:
-            return Decision(NOTHING, 1.0, False, False, Continuous(), missing)
+            return Decision(NOTHING, 1.0, False, False, Continuous())
         found = Continuous() if self.regression is None else continuous_of(self.regression.estimate(x))
-        return Decision(self._names[best], 1 / total, True, nearest > self._usual, found, missing)
+        return Decision(self._names[best], 1 / total, True, nearest > self._usual, found)
 
     def _with_gaps(self, window: FloatArray, drive_hz: float) -> Decision:
+        # A channel without any reading first: without it the others may be whole.
+        silent = self._used & ~np.isfinite(window).any(axis=0)
+        if silent.any():
+            return self._without(silent, window, drive_hz)
         drive, _ = turned_phasors(window[None], self.model.rate_hz, drive_hz, self.model.reference)
         gone = ~np.isfinite(drive[0]) & self._used
-        if not gone.any():
-            return self._decide(np.where(self._used, drive, 0.0))
+        return self._without(gone, window, drive_hz) if gone.any() else self._decide(np.where(self._used, drive, 0.0))
+
+    def _without(self, gone: BoolArray, window: FloatArray, drive_hz: float) -> Decision:
         key = gone.tobytes()
         if key not in self._others:
             model = self.model.without(gone)
             regression = None if self.regression is None else self.regression.of(model)
             self._others[key] = Reader(model, self.samples, regression=regression)
-        other = self._others[key]
-        left, _ = turned_phasors(window[None], other.model.rate_hz, drive_hz, other.model.reference)
-        return other._decide(np.where(other._used, left, 0.0), int(gone.sum()))
+        found = self._others[key].decide(window, drive_hz=drive_hz)
+        return replace(found, missing=found.missing + int(gone.sum()))
 
     def _weights_at(self, drive_hz: float) -> ComplexArray:
         key = round(drive_hz / _STEP_HZ)

@@ -1,0 +1,131 @@
+"""`skinfab nail train` and `run`: from logs to a model, from a model to decisions, on a log and on a port."""
+
+import csv
+import itertools
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from skinfab.cli.main import main
+from skinfab.fingertip.nail.patterns import TESTS
+from skinfab.fingertip.nail.simulator import nail_frames, nail_stream, participant
+from skinfab.readout.pty_server import PtyServer
+
+FILES = ["decisions.csv", "nail.png", "result.json"]
+
+
+@pytest.fixture(scope="module")
+def logs(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("nail") / "logs"
+    options = ["--test", "pins6", "--participants", "2", "--training", "4", "--rounds", "2", "--samples", "256"]
+    assert main(["nail", "simulate", *options, "-o", str(folder)]) == 0
+    return folder
+
+
+@pytest.fixture(scope="module")
+def model(logs: Path) -> Path:
+    path = logs.parent / "m.npz"
+    assert main(["nail", "train", str(logs / "labels.csv"), "--participant", "1", "-o", str(path)]) == 0
+    return path
+
+
+def result(capsys: pytest.CaptureFixture[str]) -> dict:  # type: ignore[type-arg]
+    said = capsys.readouterr()
+    assert said.err == ""
+    return json.loads(said.out)  # type: ignore[no-any-return]
+
+
+@pytest.mark.parametrize("method", ["improved", "published"])
+def test_train(logs: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], method: str) -> None:
+    options = ["--participant", "1", "--method", method, "-o", str(tmp_path / "m.npz"), "--json"]
+    assert main(["nail", "train", str(logs / "labels.csv"), *options]) == 0
+    found = result(capsys)
+    assert found["simulated"] and found["trials"] == 28 and found["classes"][0] == "none" and len(found["classes"]) == 7
+    held = found["held_out"]
+    assert held["by"] == "test part of the table" and sum(map(sum, held["whole trials"]["counts"])) == 12
+    rate = held["whole trials"]["accuracy"]
+    assert 0.4 < rate["value"] and rate["low"] < rate["value"] <= rate["high"]
+    assert ("33 readings" in held) == (method == "improved")
+    assert (tmp_path / "m.npz").read_bytes()[:2] == b"PK" and [each.name for each in tmp_path.iterdir()] == ["m.npz"]
+
+
+def test_train_says_it_in_words(logs: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["nail", "train", str(logs / "labels.csv"), "--participant", "all", "-o", str(tmp_path / "m.npz")]) == 0
+    said = capsys.readouterr()
+    assert "improved (simulated): 80 trials of 1, 2" in said.out and "held out by participant" in said.out and "% right [" in said.out
+    assert "forces from" in said.err and "too much alike" in said.err
+
+
+def test_run_on_a_log(logs: Path, model: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    capsys.readouterr()
+    log = str(logs / "participant-1.csv")
+    assert main(["nail", "run", str(model), log, "--labels", str(logs / "labels.csv"), "-o", str(tmp_path / "o"), "--json"]) == 0
+    found = result(capsys)
+    assert sorted(each.name for each in (tmp_path / "o").iterdir()) == FILES
+    assert json.loads((tmp_path / "o/result.json").read_text()) == found and found["simulated"] and found["window_readings"] == 33
+    assert found["labels"]["trials"] == 40 and found["labels"]["accuracy"]["value"] > 0.8  # most of them were learned from
+    assert 160 < found["drive_hz"]["low"] < found["drive_hz"]["high"] < 180 and sum(found["touched"].values()) == found["windows"]
+    text = (tmp_path / "o/decisions.csv").read_text().splitlines()
+    assert text[0] == "# simulated: true"
+    rows = list(csv.DictReader(text[1:]))
+    assert len(rows) == found["windows"] and {each["missing"] for each in rows} == {"0"}
+    touched = next(each for each in rows if each["contact"] == "1")
+    assert abs(float(touched["x_mm"])) < 10 and touched["angle_deg"] == "" and 0 < float(touched["confidence"]) <= 1
+
+
+def test_run_says_it_in_words(logs: Path, model: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    capsys.readouterr()
+    assert main(["nail", "run", str(model), str(logs / "participant-2.csv"), "--window", "16", "-o", str(tmp_path / "o")]) == 0
+    said = capsys.readouterr()
+    assert "participant-2.csv (simulated):" in said.out and "windows of 11.4 ms" in said.out and "the motor turned at" in said.out
+
+
+def test_run_on_a_port(model: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    capsys.readouterr()
+    finger, stream = participant(np.random.default_rng([0, 1])), nail_stream()
+    frames = list(itertools.islice(nail_frames(finger, [None, TESTS["pins6"][0], TESTS["pins6"][5]], hold_s=0.5), 2100))
+    with PtyServer(stream, frames) as device:
+        assert main(["nail", "run", str(model), "--port", str(device.path), "--seconds", "2.5", "-o", str(tmp_path / "o")]) == 0
+    said = capsys.readouterr().out
+    assert "none" in said.splitlines()[0] and "confidence" in said and "to the decision:" in said
+    found = json.loads((tmp_path / "o/result.json").read_text())
+    latency = found["latency_ms"]
+    assert found["simulated"] and found["frames"] + found["lost"] <= 2100 and found["frames"] > 1800
+    assert 0 < latency["median"] <= latency["p99"] <= latency["worst"] and sum(latency["histogram"]["counts"]) == found["windows"]
+    assert found["touched"]["none"] > 0.2 * found["windows"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        ([], "give a LOG or --port PORT"),
+        (["a.csv", "--port", "p"], "one of them"),
+        (["a.csv", "--seconds", "3"], "--seconds is for a port"),
+        (["--port", "p", "--labels", "l.csv"], "--labels is for a log"),
+        (["a.csv", "--window", "0"], "'0' is not a whole number from 1 up"),
+    ],
+)
+def test_wrong_usage(model: Path, arguments: list[str], says: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["nail", "run", str(model), *arguments, "-o", "o"]) == 2
+    said = capsys.readouterr().err
+    assert says in said and "usage: skinfab nail run" in said
+
+
+def test_input_that_cannot_be_used(logs: Path, model: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    capsys.readouterr()
+    log, out = str(logs / "participant-1.csv"), str(tmp_path / "o")
+    for arguments, says in (
+        (["train", str(logs / "labels.csv"), "-o", out + ".npz"], "2 participants (1, 2), and fingers differ; choose with --participant"),
+        (["train", str(logs / "labels.csv"), "--participant", "Ann", "-o", out + ".npz"], "there is no participant 'Ann'"),
+        (["train", str(logs / "labels.csv"), "-o", str(tmp_path / "gone/m.npz")], "its folder does not exist"),
+        (["run", log, log, "-o", out], "not a whole model"),
+        (["run", str(model), str(logs / "labels.csv"), "-o", out], "labels.csv"),
+        (["run", str(model), log, "--window", "7", "-o", out], "a window of 7 readings is none"),
+        (["run", str(model), log, "--window", "16000", "-o", out], "nothing could be decided"),
+    ):
+        assert main(["nail", *arguments]) == 1
+        said = capsys.readouterr()
+        assert says in said.err and said.err.count("\n") == 1 and said.out == ""
+    assert list(tmp_path.iterdir()) == []

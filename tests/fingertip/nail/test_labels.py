@@ -1,0 +1,92 @@
+"""Labels: what is written is read, trials are cut out where they are, and what does not fit is said."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from skinfab.errors import InputError
+from skinfab.fingertip.nail.labels import Label, rate_of, read_labels, read_trials, write_labels
+from skinfab.readout.frame import Channel, Recording, Stream
+from skinfab.readout.logs.log import write_log
+
+STREAM = Stream("nail", tuple(Channel(name, "G", low=-4, high=4) for name in ("Az", "Ay", "Ax")), 1400.0, simulated=True)
+
+
+@pytest.fixture
+def table(tmp_path: Path) -> Path:
+    values = np.arange(300.0)[:, None] / 100 + np.array([0.0, 0.1, 0.2])
+    values[120, 0], values[130, 1] = np.nan, 9.0
+    write_log(Recording.of_values(STREAM, values, device_time=5 + np.arange(300) / 1400), tmp_path / "a.csv")
+    labels = [
+        Label("a.csv", 0.0, 100 / 1400, "none", "Ann", "1", "train"),
+        Label("a.csv", 100 / 1400, 200 / 1400, "pin", "Ann", "2", x_mm=3.0),
+    ]
+    write_labels(tmp_path / "labels.csv", labels, simulated=True)
+    return tmp_path / "labels.csv"
+
+
+def test_what_is_written_is_read(table: Path) -> None:
+    labels, simulated = read_labels(table)
+    assert simulated and [each.label for each in labels] == ["none", "pin"]
+    assert labels[1].x_mm == 3.0 and math.isnan(labels[1].angle_deg) and labels[0].part == "train" and labels[1].part == ""
+
+
+def test_trials_are_where_they_are(table: Path) -> None:
+    trials, simulated, notes = read_trials(table)
+    assert simulated and notes == [] and [len(each.values) for each in trials] == [100, 100]
+    second = trials[1]
+    assert second.rate_hz == pytest.approx(1400) and second.values[0, :3].tolist() == pytest.approx([1.2, 1.1, 1.0])  # in our order
+    assert np.isnan(second.values[:, 3:]).all() and np.isnan(second.values[20, 2])
+    assert second.saturated[30].tolist() == [False, True, False, False, False, False]
+
+
+def test_columns_in_any_order_and_of_any_spreadsheet(tmp_path: Path) -> None:
+    (tmp_path / "l.csv").write_text("label;end_s;start_s;log;mine\nedge;2;1;a.csv;x\n")
+    (only,), simulated = read_labels(tmp_path / "l.csv")
+    assert (only.label, only.start_s, only.end_s, simulated) == ("edge", 1.0, 2.0, False)
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("log,start_s,end_s\na,0,1\n", "no column 'label'"),
+        ("log,start_s,end_s,label\n", "headings and no rows"),
+        ("log,start_s,end_s,label\na,0,,x\n", "line 2: log, start_s, end_s, label must all be there"),
+        ("log,start_s,end_s,label\na,1,1,x\n", "start must be before the end"),
+        ("log,start_s,end_s,label\na,-1,1,x\n", "no time of a log"),
+        ("# simulated: true\nlog,start_s,end_s,label\na,0,soon,x\n", "line 3, end_s: 'soon' is no number"),
+        ("log,start_s,end_s,label\na,0,inf,x\n", "'inf' is no number"),
+        ('log,start_s,end_s,label\n"a,0,1,x\n', "not a CSV file"),
+    ],
+)
+def test_a_table_that_cannot_be_used(tmp_path: Path, text: str, says: str) -> None:
+    (tmp_path / "l.csv").write_text(text)
+    with pytest.raises(InputError, match=says):
+        read_labels(tmp_path / "l.csv")
+
+
+def test_a_trial_beyond_the_end(table: Path) -> None:
+    table.write_text("log,start_s,end_s,label\na.csv,0.1,0.5,x\n")
+    with pytest.raises(InputError, match=r"a\.csv ends at 0\.214 s and a trial of it lasts from 0\.1 to 0\.5 s"):
+        read_trials(table)
+    table.write_text("log,start_s,end_s,label\ngone.csv,0.1,0.5,x\n")
+    with pytest.raises(InputError, match="gone.csv"):  # noqa: RUF043
+        read_trials(table)
+
+
+def test_a_log_of_other_channels(table: Path) -> None:
+    (table.parent / "b.csv").write_text("time,U\n0,1\n1,2\n")
+    table.write_text("log,start_s,end_s,label\nb.csv,0,1,x\n")
+    with pytest.raises(InputError, match="none of the channels Ax, Ay"):
+        read_trials(table)
+
+
+def test_a_rate_from_times() -> None:
+    time = np.round(np.arange(1000) / 1400, 3)  # a clock of whole milliseconds
+    time[500:] += 3.0
+    recording = Recording.of_values(Stream("s", (Channel("Ax"),)), np.zeros((1000, 1)), device_time=time)
+    assert rate_of(recording) == pytest.approx(1400, rel=0.01)
+    with pytest.raises(InputError, match="give no rate"):
+        rate_of(Recording.of_values(Stream("s", (Channel("Ax"),)), np.zeros((3, 1)), device_time=np.zeros(3)))
