@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from skinfab.errors import InputError
-from skinfab.fingertip.force.gravity import lines
+from skinfab.errors import InputError, RefusedError
+from skinfab.fingertip.force.gravity import WORST_SD_MM, centre_of_gravity, lines
 from skinfab.fingertip.force.logs import WrenchLog
 
 FloatArray = NDArray[np.float64]
@@ -46,7 +46,7 @@ class Stirred:
     path : (k, 3) float, mm
         Where each block's line passes the plane through the mean one's nearest point to the origin.
     pivot : (3,) float, mm
-        Nearest to all lines: of a pendulum, where it hangs; NaN where the lines hardly differ in direction.
+        Through which the force that changes acts: of a pendulum, where it hangs; NaN where that is not known to some millimetres.
     """
 
     liquid: bool
@@ -105,7 +105,8 @@ def stirred(log: WrenchLog, *, false_alarm: float = FALSE_ALARM) -> Stirred:
     path, spread = _path(block, mean, noise / width)
     liquid = chance < false_alarm
     period = _period(steady, np.diag(noise), 1 / float(time[1] - time[0])) if liquid else float("nan")
-    return Stirred(liquid, chance, spread, period, time, path, _pivot(block, noise / width))
+    pivot = _pivot(block, noise / width) if liquid else np.full(3, np.nan)
+    return Stirred(liquid, chance, spread, period, time, path, pivot)
 
 
 def _path(block: FloatArray, mean: FloatArray, noise: FloatArray) -> tuple[FloatArray, float]:
@@ -130,11 +131,9 @@ def _period(steady: FloatArray, noise: FloatArray, rate_hz: float) -> float:
 
 
 def _pivot(block: FloatArray, noise: FloatArray) -> FloatArray:
-    """The point nearest to all lines, where they come from directions that differ by more than their noise."""
-    q, g = lines(block[:, :3], block[:, 3:])
-    across = len(g) * np.eye(3) - g.T @ g
-    by_noise = len(g) * float(np.trace(noise[:3, :3])) / float(np.einsum("ki,ki->k", block[:, :3], block[:, :3]).mean())
-    if not np.linalg.eigvalsh(across)[0] > 3 * by_noise:
+    """Where the liquid's force acts, if it turns enough to tell; what keeps still beside it is an offset of the moment."""
+    try:
+        found = centre_of_gravity(block[:, :3], block[:, 3:], noise)
+    except RefusedError:
         return np.full(3, np.nan)
-    out: FloatArray = np.linalg.solve(across, q.sum(axis=0))
-    return out
+    return found.point if found.sd_mm < WORST_SD_MM else np.full(3, np.nan)

@@ -15,6 +15,8 @@ FloatArray = NDArray[np.float64]
 COLUMN = "pose"
 #: So many samples beyond one a pose, all poses together, show a covariance of six components.
 _ENOUGH = 30
+#: A correlation below this is none: that of a thousand samples of six components scatters by a third of it.
+_FADED = 0.04
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,14 +76,23 @@ def poses_of(log: WrenchLog) -> Poses:
     free = len(wrench) - len(names)
     if free < _ENOUGH:
         return Poses(mean[:, :3], mean[:, 3:], None, count, (*notes, f"{log.name} has too few samples a pose to show its noise"))
-    same = of[1:] == of[:-1]
-    along = float(np.clip(np.mean([_correlation(apart[:-1, j][same], apart[1:, j][same]) for j in range(6)]), 0.0, 0.99))
-    within = apart.T @ apart / free * (1 + along) / (1 - along)
+    within = apart.T @ apart / free * _correlated(apart, of)
     if not np.linalg.eigvalsh(within)[0] > 0:
         return Poses(mean[:, :3], mean[:, 3:], None, count, (*notes, f"{log.name}: a component never changes within a pose"))
     return Poses(mean[:, :3], mean[:, 3:], within / count[:, None, None], count, tuple(notes))
 
 
-def _correlation(a: FloatArray, b: FloatArray) -> float:
-    size = float(np.sqrt((a @ a) * (b @ b)))
-    return float(a @ b) / size if size > 0 else 0.0
+def _correlated(apart: FloatArray, of: NDArray[np.int64]) -> float:
+    """By how much the variance of a mean is larger than of independent samples: 1 + 2 (correlations of all lags)."""
+    size = (apart**2).sum(axis=0)
+    used = size > 0
+    total = 1.0
+    for lag in range(1, len(apart) // len(np.unique(of)) // 2):
+        same = of[lag:] == of[:-lag]
+        both = (apart[lag:] * apart[:-lag])[same].sum(axis=0)[used] / size[used]
+        mean = float(both.mean()) if used.any() else 0.0
+        # Where they have faded, what is left is chance, and adding it up would add nothing but that.
+        if mean < _FADED:
+            break
+        total += 2 * mean
+    return total
