@@ -217,8 +217,8 @@ CONTOUR_HEIGHT = 1e-6
 #: A fit of a line to a tactel array stops where its direction turns by less than this: a fiftieth of a degree.
 LINE_STEP_RAD = 3.5e-4
 
-#: A direction whose standard deviation is larger is not sure: two of these are 20 degrees, the seed's worst error.
-LINE_UNSURE_RAD = 0.17453292519943295  # 10 degrees
+#: A direction whose standard deviation is larger is not sure: two of these are 10 degrees, half of the seed's worst error.
+LINE_UNSURE_RAD = 0.08726646259971647  # 5 degrees
 
 #: Another direction explains a frame as well where it leaves less than so many variances of a reading more: a chance of one in seventy.
 LINE_RIVAL = 6.0

@@ -19,6 +19,7 @@ NAMES = {
     "gravity": "how far a hand is turned against the error of a held object's centre of gravity",
     "texture": "length and peaks of a spectrum against how often a texture is told right",
     "readout": "framing and byte errors against frames lost and wrong in silence",
+    "array": "interpolators and densities of a tactel array against errors and time",
     "nail": "the published method beside the improved one, and the length of the window against accuracy and latency",
 }
 
@@ -32,6 +33,7 @@ MODULES = {
     "gravity": ("skinfab.bench.gravity", False),
     "texture": ("skinfab.bench.texture", False),
     "readout": ("skinfab.bench.readout", False),
+    "array": ("skinfab.bench.array", False),
     "nail": ("skinfab.bench.nail", False),
 }
 

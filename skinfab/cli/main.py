@@ -38,6 +38,7 @@ COMMANDS = {
     "contact": "find contacts in the readings of a skin",
     "nail": "what a bare fingertip touches, by shaking its nail",
     "force": "a six-axis force/torque fingertip: contacts, textures, centre of gravity, shapes",
+    "array": "a capacitive array round a fingertip: places, forces, lines, slips",
     "gui": "see the object, its flat skin and the sensors, and move them",
     "bench": "measure the project beside its peers: time against distortion",
 }

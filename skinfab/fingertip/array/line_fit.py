@@ -264,4 +264,4 @@ class LineFinder:
         best, rest = ends[0], ends[1:]
         per = max(best[1] / max(best[3] - 5, 1), self._noise**2)
         rivals = (each for each in rest if each[1] - best[1] < LINE_RIVAL * per)
-        return best, any(abs(folded(float(each[0][2] - best[0][2]))) > 2 * LINE_UNSURE_RAD for each in rivals)
+        return best, any(abs(folded(float(each[0][2] - best[0][2]))) > 4 * LINE_UNSURE_RAD for each in rivals)

@@ -39,6 +39,8 @@ class ArrayLog:
         By name: ``axial_mm``, ``angle_deg``, ``force_n``, ``line_deg``, those that the log has.
     noise : float
         Standard deviation of a reading at rest, as a part of the gap.
+    rest_v : (rings, stripes) float
+        Voltages at rest; NaN of a tactel that reads nothing.
     simulated : bool
     sha256 : str
     notes : tuple of str
@@ -50,6 +52,7 @@ class ArrayLog:
     saturated: NDArray[np.bool_]
     truth: dict[str, FloatArray]
     noise: float
+    rest_v: FloatArray
     simulated: bool
     sha256: str = ""
     notes: tuple[str, ...] = ()
@@ -128,4 +131,15 @@ def of_recording(recording: Recording, *, name: str, sha256: str = "", notes: tu
         for each in TRUTH
         if each in recording.stream.names
     }
-    return ArrayLog(name, time, Z, saturated.reshape(len(time), *shape), truth, noise, recording.stream.simulated, sha256, tuple(said))
+    return ArrayLog(
+        name,
+        time,
+        Z,
+        saturated.reshape(len(time), *shape),
+        truth,
+        noise,
+        np.where(dead, np.nan, rest_v),
+        recording.stream.simulated,
+        sha256,
+        tuple(said),
+    )

@@ -239,6 +239,10 @@ class Matcher:
         self._per_force = float(unit.max())
         self._skin = skin_of(model)
 
+    def reading_of(self, force_n: float) -> float:
+        """What a tactel reads of a force on its middle."""
+        return force_n * self._per_force / self.model.rubber.young
+
     def one(self, Z: FloatArray) -> tuple[float, float, float, float, int, int]:
         """The one force that explains most, as bare numbers: mm, mm around the core, N, unexplained, steps, tactels compared.
 

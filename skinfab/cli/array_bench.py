@@ -1,0 +1,36 @@
+"""`skinfab array bench -o DIR`: the published ways beside the improved ones, on simulated arrays."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+
+from skinfab.cli import steps
+
+
+def add_options(p: argparse.ArgumentParser) -> None:
+    """How often what is timed is repeated, and where the results go."""
+    p.add_argument("--repeats", metavar="K", type=steps.counting, default=3, help="of what is timed; the least time counts (default: 3)")
+    p.add_argument("-o", "--output", metavar="DIR", type=Path, required=True, help="folder for tables, charts and a sentence")
+    p.add_argument("--json", action="store_true", help="print the result as one JSON object and nothing else")
+    p.set_defaults(run=run)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Measure, write, and say what came out."""
+    from skinfab.bench.array import run as bench
+    from skinfab.progress import terminal_progress
+    from skinfab.staging import staged_folder
+
+    with staged_folder(args.output) as folder:
+        with terminal_progress(quiet=args.json) as progress:
+            found = bench(folder, repeats=args.repeats, progress=progress)
+        files = [str(args.output / file.name) for file in sorted(folder.iterdir())]
+    if args.json:
+        print(json.dumps({"simulated": True, "files": files, **found}, allow_nan=False))
+        return 0
+    print(found["sentence"])
+    steps.say(found["notes"])
+    print("wrote " + ", ".join(files))
+    return 0

@@ -1,0 +1,112 @@
+"""Figures of an array: what a log says, and how good a learned model is."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from skinfab.files import atomic_path
+from skinfab.fingertip.array.judge import QUANTITIES, WAYS, Error
+from skinfab.fingertip.array.matched import ArrayModel
+from skinfab.fingertip.array.watch import Reading
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_DPI = 150
+#: Told apart without red and green, and in print.
+_STATES = {"point": "#000000", "line": "#0072B2", "two": "#E69F00", "wide": "#CC79A7", "edge": "#56B4E9", "past": "#D55E00"}
+_EVENTS = {"touch": "#009E73", "lift": "#777777", "slip": "#D55E00", "roll": "#0072B2"}
+_WAYS = {"published": "#000000", "drawn": "#E69F00", "learned": "#D55E00"}
+
+
+def draw_run(readings: Sequence[Reading], model: ArrayModel, path: Path, *, title: str, simulated: bool) -> None:
+    """Write where the finger was touched, on its unrolled skin and over time, with lines, forces and events, as PNG.
+
+    Parameters
+    ----------
+    readings : sequence of Reading
+    model : ArrayModel
+    path : Path
+    title : str
+    simulated : bool
+    """
+    figure = _figure((11.4, 5.6))
+    figure.suptitle(f"{title}{' (simulated)' if simulated else ''}: centre of pressure, directions, events", fontsize=10)
+    skin, times = figure.subplots(1, 2, width_ratios=(1, 1.6))
+    touched = [reading for reading in readings if math.isfinite(reading.place.axial_mm)]
+    _draw_skin(skin, touched, model)
+    time = [reading.time for reading in readings]
+    for values, colour, label in (
+        ([reading.place.axial_mm for reading in readings], "#000000", "place along, mm"),
+        ([math.degrees(reading.place.angle_rad) / 10 for reading in readings], "#0072B2", "angle around, tens of degrees"),
+        ([reading.place.force_n * 10 if reading.place.force_n else math.nan for reading in readings], "#E69F00", "force, tenths of N"),
+    ):
+        times.plot(time, values, ".-", ms=3, lw=0.7, color=colour, label=label)
+    for event in (event for reading in readings for event in reading.events):
+        times.axvspan(event.start, max(event.end, event.start + 0.01 * (time[-1] - time[0])), color=_EVENTS[event.kind], alpha=0.25, lw=0)
+    for kind, colour in _EVENTS.items():
+        times.fill_between([], [], [], color=colour, alpha=0.25, lw=0, label=kind)
+    times.set(xlabel="time, s")
+    times.grid(True, lw=0.3, alpha=0.6)
+    times.legend(fontsize=7, ncols=2)
+    _save(figure, path)
+
+
+def _draw_skin(axes: Axes, touched: Sequence[Reading], model: ArrayModel) -> None:
+    g = model.geometry
+    i, j = np.meshgrid(np.arange(g.rings), np.arange(g.stripes), indexing="ij")
+    angles = [math.degrees(g.from_tactels(0, int(k))[1]) for k in j.ravel()]
+    axes.plot(angles, i.ravel() * g.ring_pitch, "s", ms=3, mfc="none", color="#bbbbbb", label="tactels")
+    for state, colour in _STATES.items():
+        of = [reading for reading in touched if reading.state == state]
+        x, y = [math.degrees(reading.place.angle_rad) for reading in of], [reading.place.axial_mm for reading in of]
+        if of:
+            axes.plot(x, y, ".", ms=5, color=colour, label=state)
+        for reading in of:
+            if state == "line" and reading.line is not None and reading.line.orientation.sure:
+                half, a = reading.line.length_mm / 2, reading.line.line_rad
+                dx, dy = math.degrees(half * math.cos(a) / g.finger_radius), half * math.sin(a)
+                centre = math.degrees(reading.place.angle_rad)
+                axes.plot([centre - dx, centre + dx], [reading.place.axial_mm - dy, reading.place.axial_mm + dy], "-", lw=0.3, color=colour)
+    axes.set(xlabel="angle around the finger, degrees", ylabel="place along it, mm from ring 0", xlim=(-180, 180))
+    axes.legend(fontsize=7)
+
+
+def draw_training(model: ArrayModel, errors: Sequence[Error], path: Path, *, simulated: bool) -> None:
+    """Write held-out errors by way, and the gains, as PNG."""
+    figure = _figure((11.4, 3.8))
+    figure.suptitle(f"An array's model on logs that were held out{' (simulated)' if simulated else ''}", fontsize=10)
+    *panels, gains = figure.subplots(1, len(QUANTITIES) + 1)
+    for axes, (quantity, unit) in zip(panels, QUANTITIES.items(), strict=True):
+        for k, way in enumerate(WAYS):
+            for each in (one for one in errors if (one.quantity, one.way) == (quantity, way)):
+                span = [[max(each.rms - each.low, 0)], [max(each.high - each.rms, 0)]]
+                axes.bar(k, each.rms, color=_WAYS[way], width=0.7)
+                axes.errorbar(k, each.rms, yerr=span, color="#555555", capsize=3)
+        axes.set_xticks(range(len(WAYS)), WAYS, fontsize=8)
+        axes.set_title(f"{quantity}: rms, {unit}", fontsize=9)
+    shown = gains.imshow(model.gains, cmap="viridis", origin="lower")
+    gains.set(xlabel="stripe", ylabel="ring")
+    gains.set_title("gains", fontsize=9)
+    figure.colorbar(shown, ax=gains)
+    _save(figure, path)
+
+
+def _figure(size: tuple[float, float]) -> Figure:
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=size, dpi=_DPI, layout="constrained")
+    FigureCanvasAgg(figure)
+    return figure
+
+
+def _save(figure: Figure, path: Path) -> None:
+    with atomic_path(path) as partial:
+        figure.savefig(partial)

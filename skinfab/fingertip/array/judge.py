@@ -1,0 +1,102 @@
+"""How good a model is on logs that it has not learned from, beside the published way and the array as drawn."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from skinfab.fingertip.array.geometry import Geometry
+from skinfab.fingertip.array.learn import learn
+from skinfab.fingertip.array.logs import ArrayLog
+from skinfab.fingertip.array.matched import ArrayModel, Matcher
+from skinfab.fingertip.array.study import PUBLISHED, locators, turners
+from skinfab.fingertip.splits import leave_one_out
+from skinfab.rates import DRAWS
+
+FloatArray = NDArray[np.float64]
+
+#: Ways by name: as published, matched with the array as drawn, matched with what was learned.
+WAYS = ("published", "drawn", "learned")
+#: What is judged, and its unit.
+QUANTITIES = {"axial": "mm", "angle": "deg", "force": "part", "line": "deg"}
+
+
+@dataclass(frozen=True)
+class Error:
+    """Root mean square error of a way, with the interval of drawing whole logs anew.
+
+    Parameters
+    ----------
+    way, quantity : str
+    rms, low, high, worst : float
+    frames : int
+    """
+
+    way: str
+    quantity: str
+    rms: float
+    low: float
+    high: float
+    worst: float
+    frames: int
+
+
+def held_out(logs: Sequence[ArrayLog], geometry: Geometry) -> tuple[Error, ...]:
+    """Errors on each log by what was learned from all others.
+
+    Raises
+    ------
+    InputError
+        As `learn`; there are fewer than two logs.
+    """
+    pressed = [k for k, log in enumerate(logs) if _of(log, rods=False).size]
+    errors: dict[tuple[str, str], list[FloatArray]] = {}
+    for train, test in leave_one_out([logs[k].name for k in pressed]):
+        model = learn([logs[pressed[k]] for k in train], geometry)
+        for k in test:
+            _add(errors, logs[pressed[k]], geometry, model)
+    # Logs of rods alone teach nothing, so all that was learned may be judged on them.
+    if rods := [log for k, log in enumerate(logs) if k not in pressed and _of(log, rods=True).size]:
+        whole = learn([logs[k] for k in pressed], geometry)
+        for log in rods:
+            _add(errors, log, geometry, whole)
+    return tuple(_error(way, quantity, each) for (way, quantity), each in errors.items())
+
+
+def _of(log: ArrayLog, *, rods: bool) -> NDArray[np.int64]:
+    """Frames of presses, or of rods."""
+    touched = log.touched()
+    line = log.truth.get("line_deg", np.full(len(log.time), np.nan))
+    return touched[np.isfinite(line[touched]) == rods]
+
+
+def _add(errors: dict[tuple[str, str], list[FloatArray]], log: ArrayLog, geometry: Geometry, learned: ArrayModel) -> None:
+    models = {"drawn": ArrayModel.nominal(geometry), "learned": learned}
+    for way in WAYS:
+        if (frames := _of(log, rods=False)).size:
+            locate = locators(geometry, models.get(way))[PUBLISHED if way == "published" else "matched"]
+            found = np.array([locate(log.Z[k]) for k in frames])
+            angle = [math.degrees(math.remainder(a, math.tau)) for a in found[:, 1] - np.radians(log.truth["angle_deg"][frames])]
+            errors.setdefault((way, "axial"), []).append(found[:, 0] - log.truth["axial_mm"][frames])
+            errors.setdefault((way, "angle"), []).append(np.array(angle))
+            if way in models:
+                matcher = Matcher(models[way])
+                force = np.array([matcher.one(log.Z[k])[2] for k in frames])
+                errors.setdefault((way, "force"), []).append(force / log.truth["force_n"][frames] - 1)
+        if (frames := _of(log, rods=True)).size:
+            turn = turners(geometry, models.get(way))["span" if way == "published" else "matched"]
+            lines = np.array([turn(log.Z[k]).line_rad for k in frames])
+            off = np.degrees(lines) - log.truth["line_deg"][frames]
+            errors.setdefault((way, "line"), []).append(np.where(np.isfinite(off), off - 180 * np.floor(off / 180 + 0.5), 45.0))
+
+
+def _error(way: str, quantity: str, each: Sequence[FloatArray]) -> Error:
+    squares, counts = np.array([float((e**2).sum()) for e in each]), np.array([len(e) for e in each])
+    drawn = np.random.default_rng(0).integers(0, len(each), (DRAWS, len(each)))
+    low, high = np.quantile(np.sqrt(squares[drawn].sum(axis=1) / counts[drawn].sum(axis=1)), (0.025, 0.975))
+    whole = np.concatenate(each)
+    return Error(way, quantity, math.sqrt(squares.sum() / counts.sum()), float(low), float(high), float(np.abs(whole).max()), len(whole))
