@@ -12,8 +12,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from skinfab.bench.flatten import read_csv, write_csv
+from skinfab.bench import nail_window
+from skinfab.bench.flatten import REPEATS, read_csv, write_csv
 from skinfab.bench.nail_ablation import ablate
+from skinfab.fingertip.nail.improved import improved_answers
 from skinfab.fingertip.nail.paper import ACCURACY, AROUND, DIFFERING
 from skinfab.fingertip.nail.patterns import TESTS
 from skinfab.fingertip.nail.protocol import Outcome, Protocol, Session, published_answers, sessions, study
@@ -23,9 +25,11 @@ from skinfab.progress import Progress, part_of, silent
 
 Table = Sequence[Mapping[str, Any]]
 
-PUBLISHED = "published"
-#: Part of the time that the three tests take; the ablation is the rest.
-_TESTS_SHARE = 0.5
+PUBLISHED, IMPROVED = "published", "improved"
+#: The sensor condition that the improved method has, and by which the two are compared.
+FULL = "AxAyAzGxGyGz"
+#: Parts of the time: the three tests, then the ablation; the window's lengths are the rest.
+_TESTS_DONE, _TERMS_DONE = 0.4, 0.8
 
 
 @dataclass(frozen=True)
@@ -84,15 +88,17 @@ class Difference:
     simulated: bool = True
 
 
-def run(folder: Path, *, repeats: int = 1, progress: Progress = silent, protocol: Protocol | None = None, seed: int = 0) -> dict[str, Any]:
-    """Run the three tests, and write tables, charts and a sentence, nail*.csv, nail*.png and nail.txt, into `folder`.
+def run(
+    folder: Path, *, repeats: int = REPEATS, progress: Progress = silent, protocol: Protocol | None = None, seed: int = 0
+) -> dict[str, Any]:
+    """Run the three tests and measure the window's length; write tables, charts and sentences, nail*.csv, .png and .txt, into `folder`.
 
     Parameters
     ----------
     folder : Path
         There already.
     repeats : int
-        Of timings, of which there are none here.
+        Of timings.
     progress : Progress
     protocol : Protocol, optional
         The paper's where it is left out.
@@ -110,12 +116,12 @@ def run(folder: Path, *, repeats: int = 1, progress: Progress = silent, protocol
     protocol = protocol or Protocol()
     outcomes = {}
     for k, test in enumerate(TESTS):
-        part = part_of(progress, _TESTS_SHARE * k / len(TESTS), _TESTS_SHARE * (k + 1) / len(TESTS))
+        part = part_of(progress, _TESTS_DONE * k / len(TESTS), _TESTS_DONE * (k + 1) / len(TESTS))
         outcomes[test] = _outcome(test, protocol, seed, part)
-    compared = {test: compare(outcome.accuracy) for test, outcome in outcomes.items()}
+    compared = {test: compare({name: of.accuracy[name] for name in CONDITIONS}) for test, of in outcomes.items()}
     write_csv([row for outcome in outcomes.values() for row in _rows(outcome)], folder / "nail.csv")
     write_csv([row for test, of in compared.items() for row in _differences(test, of)], folder / "nail_pairs.csv")
-    write_csv(ablate(protocol, seed=seed, progress=part_of(progress, _TESTS_SHARE, 1.0)), folder / "nail_ablation.csv")
+    write_csv(ablate(protocol, seed=seed, progress=part_of(progress, _TESTS_DONE, _TERMS_DONE)), folder / "nail_ablation.csv")
     # From here on only what the tables hold is used, so that charts and sentence cannot say anything else.
     table, pairs, terms = (read_csv(folder / f"nail{part}.csv") for part in ("", "_pairs", "_ablation"))
     said = sentence(table, pairs)
@@ -127,7 +133,16 @@ def run(folder: Path, *, repeats: int = 1, progress: Progress = silent, protocol
     draw_accuracy(table, folder / "nail.png")
     for test, outcome in outcomes.items():
         draw_confusion(outcome, folder / f"nail_confusion_{test}.png")
-    return {"sentence": said, "notes": notes, "simulated": True, "rows": table, "pairs": pairs, "ablation": terms}
+    windows = nail_window.run(folder, repeats=repeats, progress=part_of(progress, _TERMS_DONE, 1.0), protocol=protocol)
+    return {
+        "sentence": f"{said} {windows['sentence']}",
+        "notes": notes + windows["notes"],
+        "simulated": True,
+        "rows": table,
+        "pairs": pairs,
+        "ablation": terms,
+        "windows": windows["rows"],
+    }
 
 
 def _outcome(test: str, protocol: Protocol, seed: int, progress: Progress) -> Outcome:
@@ -136,7 +151,7 @@ def _outcome(test: str, protocol: Protocol, seed: int, progress: Progress) -> Ou
     def told(of: Session) -> None:
         progress(of.participant / protocol.participants, f"{test}: participant {of.participant}")
 
-    return study(sessions(test, protocol=protocol, seed=seed), published_answers, told=told)
+    return study(sessions(test, protocol=protocol, seed=seed), lambda of: published_answers(of) | improved_answers(of), told=told)
 
 
 def _rows(outcome: Outcome) -> list[Row]:
@@ -147,7 +162,8 @@ def _rows(outcome: Outcome) -> list[Row]:
         paper = (around | ACCURACY[outcome.test]).get(condition, math.nan)
         within = not abs(mean - paper) > deviation
         rows.append(Row(outcome.test, condition, PUBLISHED, mean, deviation, paper, condition in around, within))
-    return rows
+    mean, deviation = 100 * outcome.mean(IMPROVED), 100 * outcome.deviation(IMPROVED)
+    return [*rows, Row(outcome.test, FULL, IMPROVED, mean, deviation, math.nan, False, True)]
 
 
 def _differences(test: str, found: Comparison) -> list[Difference]:
@@ -165,13 +181,15 @@ def sentence(table: Table, pairs: Table) -> str:
     near = [row for row in known if row["within"]]
     heads = []
     for test in TESTS:
-        full = next(row for row in rows if row["test"] == test and row["condition"] == "AxAyAzGxGyGz")
-        heads.append(f"{full['percent']:.1f} % of {test} ({full['paper']:.1f})")
+        full, better = (
+            next(r for r in table if (r["test"], r["condition"], r["method"]) == (test, FULL, m)) for m in (PUBLISHED, IMPROVED)
+        )
+        heads.append(f"{full['percent']:.1f} % of {test} (paper {full['paper']:.1f}, improved {better['percent']:.1f})")
     far = [f"{row['condition']} of {row['test']} {row['percent']:.0f} instead of {row['paper']:.0f}" for row in known if row not in near]
     printed = [row for row in pairs if row["paper"]]
     both = sum(bool(row["differs"]) for row in printed)
     return (
-        f"Nail, simulated: with all six channels the published method is right in {', '.join(heads)} (the paper's in brackets); "
+        f"Nail, simulated: with all six channels the published method is right in {', '.join(heads)}; "
         f"{len(near)} of {len(known)} accuracies that the paper gives are within the participants' standard deviation"
         + (f", and these are not: {', '.join(far)}" if far else "")
         + f"; of {len(printed)} pairs of sensor conditions that differ in the paper {both} differ here."

@@ -13,7 +13,7 @@ from skinfab.files import atomic_write
 from skinfab.fingertip.nail.protocol import Outcome
 from skinfab.fingertip.nail.published import CONDITIONS
 
-_OURS, _PAPER = "#0072B2", "#D55E00"
+_OURS, _PAPER, _IMPROVED = "#0072B2", "#D55E00", "#009E73"
 _DPI = 130
 
 
@@ -25,17 +25,27 @@ def draw_accuracy(table: Sequence[Mapping[str, Any]], path: Path) -> None:
     tests = list(dict.fromkeys(row["test"] for row in table))
     figure = Figure(figsize=(11, 3.9), dpi=_DPI, layout="constrained")
     FigureCanvasAgg(figure)
-    figure.suptitle("Published method by sensor condition (simulated participants; bars: their standard deviation)", fontsize=10)
+    figure.suptitle("Nail: accuracy by sensor condition (simulated participants; error bars: their standard deviation)", fontsize=10)
     for axes, test in zip(figure.subplots(1, len(tests), sharey=True, squeeze=False)[0], tests, strict=True):
         rows = [row for row in table if row["test"] == test and row["method"] == "published"]
         at = np.arange(len(rows))
-        axes.bar(at, [r["percent"] for r in rows], yerr=[r["deviation"] for r in rows], color=_OURS, alpha=0.75, capsize=2, label="here")
+        axes.bar(
+            at,
+            [r["percent"] for r in rows],
+            yerr=[r["deviation"] for r in rows],
+            color=_OURS,
+            alpha=0.75,
+            capsize=2,
+            label="published method",
+        )
         for exact, mark in ((True, "D"), (False, "_")):
             of = [(k, r["paper"]) for k, r in enumerate(rows) if r["paper"] is not None and bool(r["around"]) != exact]
             if of:
                 axes.plot(
                     *zip(*of, strict=True), mark, color=_PAPER, ms=6 if exact else 14, mew=1.5, label="paper" if exact else '"around"'
                 )
+        better = next(r for r in table if r["test"] == test and r["method"] == "improved")
+        axes.plot(0, better["percent"], "^", color=_IMPROVED, ms=8, label="improved method")
         axes.set_xticks(at, [r["condition"] for r in rows], rotation=90, fontsize=7)
         axes.set(title=test, ylim=(0, 100))
         axes.legend(fontsize=7, loc="upper right")
@@ -48,9 +58,10 @@ def draw_confusion(outcome: Outcome, path: Path) -> None:
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    size = len(next(iter(outcome.confusion.values())).names)
-    figure = Figure(figsize=(3 * (1.5 + 0.2 * size), 3 * (1.5 + 0.2 * size)), dpi=_DPI, layout="constrained")
+    side = 3 * (1.6 + 0.2 * len(outcome.confusion[next(iter(CONDITIONS))].names))
+    figure = Figure(figsize=(side, side), dpi=_DPI)  # fixed margins: a layout engine draws every number twice
     FigureCanvasAgg(figure)
+    figure.subplots_adjust(left=0.04, right=0.98, bottom=0.03, top=0.93, wspace=0.12, hspace=0.22)
     figure.suptitle(f"{outcome.test}, published method: what (row) was taken for what (column), % (simulated)", fontsize=10)
     for axes, condition in zip(figure.subplots(3, 3).ravel(), CONDITIONS, strict=True):
         found = outcome.confusion[condition]

@@ -46,8 +46,6 @@ class Finger:
         From the middle of the body.
     imbalance_kgm : float
         Eccentric mass times its radius.
-    tilt : (2,) float
-        Of the motor's plane: rise along x and along y.
     """
 
     mass_kg: float
@@ -59,7 +57,6 @@ class Finger:
     motor_mm: FloatArray
     imu_mm: FloatArray
     imbalance_kgm: float
-    tilt: FloatArray
 
 
 def cross_matrix(p: FloatArray) -> FloatArray:
@@ -99,8 +96,7 @@ def contact_matrix(points_mm: FloatArray, weights: FloatArray) -> FloatArray:
 
 def motor_force(finger: Finger, omega: FloatArray) -> ComplexArray:
     """Force and moment of the eccentric mass, which turns about z; (n, 6) for n angular frequencies in rad/s."""
-    turning = np.array([1.0, -1.0j])
-    force = np.append(turning, finger.tilt @ turning)
+    force = np.array([1.0, -1.0j, 0.0])
     direction = np.concatenate([force, np.cross(finger.motor_mm / 1e3, force)])
     out: ComplexArray = (finger.imbalance_kgm * np.asarray(omega) ** 2)[:, None] * direction
     return out

@@ -193,9 +193,11 @@ def study(
     """
     accuracy: dict[str, list[float]] = {}
     confusion: dict[str, Confusion] = {}
-    tests = []
+    test = ""
     for each in recorded:
-        tests.append(each.test)
+        if test and each.test != test:
+            raise InputError(f"sessions of {test} and {each.test} cannot be judged together; give those of one test")
+        test = each.test
         true = each.rounds.classes
         names = tuple(str(k) for k in range(len(TESTS[each.test]) + 1))
         for condition, said in answers(each).items():
@@ -204,6 +206,6 @@ def study(
             confusion[condition] = confusion[condition] + found if condition in confusion else found
         if told is not None:
             told(each)
-    if len(set(tests)) != 1:
-        raise InputError(f"sessions of {len(set(tests))} tests cannot be judged together; give those of one")
-    return Outcome(tests[0], {name: np.array(each) for name, each in accuracy.items()}, confusion)
+    if not test:
+        raise InputError("there is no session to judge; record one participant at least")
+    return Outcome(test, {name: np.array(each) for name, each in accuracy.items()}, confusion)

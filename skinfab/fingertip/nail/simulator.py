@@ -1,7 +1,7 @@
 """Simulated participants who touch the paper's patterns, and what the six channels of the sensor on their nail read.
 
 A participant is a `Finger` drawn about one set of means; a touch is a pattern with the scatter of a hand that aims at it. Readings are
-the finger's answer at the drive and at its second harmonic, with gravity, noise, and the ends of the sensor's ranges.
+the finger's answer to the motor, with gravity, noise, and the ends of the sensor's ranges.
 
 What it leaves out: the pulp is a row of linear springs that does not slide, stick, creep or lift off; the finger is one rigid body, so
 that the joint behind it only holds it; the motor turns evenly and does not feel the load; nothing changes while a touch lasts; and
@@ -37,18 +37,22 @@ FORCE_N = 0.98
 #: The pad lies so far below the middle of the body.
 _PAD_MM = -6.0
 #: Pressure along what is touched falls off with the pad's curvature, across and along the finger: exp(-(x/a)^2 - (y/b)^2).
-_PAD_HALF_MM = np.array([8.0, 12.0])
+_PAD_HALF_MM = np.array([5.8, 15.0])
 _EDGE_LENGTH_MM = 20.0
 
-#: Means of the participants. Held alone, the finger would swing with these frequencies along and about x, y, z.
+#: A contact's stiffness grows with this power of the force (Hertz).
+_HERTZ = 1 / 3
+
+#: Means of the participants. Held alone, the body would swing with these frequencies along and about x, y, z. About x, the axis on
+#: which the joint bends, it takes the rest of the finger along; hence the larger inertia.
 _MASS_KG = 6e-3
-_INERTIA_KGM2 = np.array([2.6e-7, 1.0e-7, 2.0e-7])
-_HELD_HZ = np.array([68.0, 41.0, 69.0, 76.0, 99.0, 145.0])
-_DAMPING = 0.24
-_CONTACT_N_PER_M = 3300.0
-_MOTOR_MM = np.array([0.0, -5.6, 6.0])
-_IMU_MM = np.array([0.0, 6.7, 5.4])
-_IMBALANCE_KGM = 4.0e-8
+_INERTIA_KGM2 = np.array([5.9e-7, 0.75e-7, 1.5e-7])
+_HELD_HZ = np.array([91.0, 44.0, 80.0, 60.0, 95.0, 178.0])
+_DAMPING = 0.39
+_CONTACT_N_PER_M = 3900.0
+_MOTOR_MM = np.array([0.0, -6.0, 5.5])
+_IMU_MM = np.array([0.0, 6.5, 5.2])
+_IMBALANCE_KGM = 3.6e-8
 
 
 @dataclass(frozen=True)
@@ -59,10 +63,6 @@ class Scene:
     ----------
     drive_hz : float
         The motor's frequency.
-    drive_scatter : float
-        Of it from touch to touch, as a part.
-    harmonic : float
-        Force at twice the drive, as a part of that at the drive.
     place_mm : float
         How far off the middle of the pattern the finger comes down, across and along.
     turn_rad : float
@@ -71,12 +71,6 @@ class Scene:
         As a part of the wanted force.
     person_scatter : float
         Of mass, inertia and stiffnesses among participants, as a part (log-normal).
-    mount_mm : float
-        Of motor and sensor on the nail among participants, each way.
-    tilt_rad : float
-        Of the motor's plane among participants, each way.
-    hertz : float
-        A contact's stiffness grows with the force to this power; Hertz's for a round pad is 1/3.
     contact_delay_s : float
         Damping over stiffness of what touches the pad.
     gravity_g : float
@@ -88,19 +82,14 @@ class Scene:
     """
 
     drive_hz: float = 169.0
-    drive_scatter: float = 0.004
-    harmonic: float = 0.06
-    place_mm: float = 1.2
-    turn_rad: float = math.radians(18)
+    place_mm: float = 1.05
+    turn_rad: float = math.radians(12.5)
     force_scatter: float = 0.10
-    person_scatter: float = 0.15
-    mount_mm: float = 0.3
-    tilt_rad: float = 0.08
-    hertz: float = 1 / 3
+    person_scatter: float = 0.16
     contact_delay_s: float = 2.5e-4
     gravity_g: float = 1.0
-    noise_g: float = 0.05
-    noise_dps: float = 6.0
+    noise_g: float = 0.04
+    noise_dps: float = 4.0
     range_g: float = 4.0
     range_dps: float = 500.0
 
@@ -148,10 +137,9 @@ def participant(rng: np.random.Generator, scene: Scene | None = None) -> Finger:
         damping_ratio=float(drawn(_DAMPING)),
         contact_n_per_m=float(drawn(_CONTACT_N_PER_M)),
         contact_delay_s=scene.contact_delay_s,
-        motor_mm=_MOTOR_MM + scene.mount_mm * rng.standard_normal(3),
-        imu_mm=_IMU_MM + scene.mount_mm * rng.standard_normal(3),
+        motor_mm=_MOTOR_MM,
+        imu_mm=_IMU_MM,
         imbalance_kgm=_IMBALANCE_KGM,
-        tilt=scene.tilt_rad * rng.standard_normal(2),
     )
 
 
@@ -162,34 +150,17 @@ def touch(pattern: Pattern | None, rng: np.random.Generator, scene: Scene | None
     turned = scene.turn_rad * float(rng.standard_normal())
     # Beyond these the paper's participants tried again.
     force = FORCE_N * float(np.clip(1 + scene.force_scatter * rng.standard_normal(), 0.8, 1.2))
-    drive = scene.drive_hz * (1 + scene.drive_scatter * float(rng.standard_normal()))
     if pattern is None:
-        return Touch(None, math.nan, math.nan, math.nan, 0.0, drive)
+        return Touch(None, math.nan, math.nan, math.nan, 0.0, scene.drive_hz)
     x, y = pattern.x_mm + float(off[0]), pattern.y_mm + float(off[1])
-    return Touch(pattern, x, y, pattern.angle_rad + turned, force, drive)
+    return Touch(pattern, x, y, pattern.angle_rad + turned, force, scene.drive_hz)
 
 
-def phasors(finger: Finger, touches: Sequence[Touch], *, scene: Scene | None = None) -> ComplexArray:
-    """The finger's answers at the drive and at twice the drive.
-
-    Parameters
-    ----------
-    finger : Finger
-    touches : sequence of n Touch
-    scene : Scene, optional
-
-    Returns
-    -------
-    (n, 2, 6) complex
-        G and deg/s; see `respond`.
-    """
-    scene = scene or Scene()
-    contact = contact_matrix(*_touched(touches))
-    stiffened = np.array([(each.force_n / FORCE_N) ** scene.hertz for each in touches])
+def phasors(finger: Finger, touches: Sequence[Touch]) -> ComplexArray:
+    """The finger's answers to its motor, (n, 6) in G and deg/s; see `respond`."""
+    stiffened = np.array([(each.force_n / FORCE_N) ** _HERTZ for each in touches])
     omega = 2 * math.pi * np.array([each.drive_hz for each in touches])
-    force = motor_force(finger, omega)
-    answers = [respond(finger, contact, stiffened, k * omega, part * force) for k, part in ((1, 1.0), (2, scene.harmonic))]
-    return np.stack(answers, axis=1)
+    return respond(finger, contact_matrix(*_touched(touches)), stiffened, omega, motor_force(finger, omega))
 
 
 def _touched(touches: Sequence[Touch]) -> tuple[FloatArray, FloatArray]:
@@ -239,12 +210,12 @@ def readings(
     scene = scene or Scene()
     if samples < 1:
         raise InputError(f"{samples} readings of a touch are none; ask for one or more")
-    z = phasors(finger, touches, scene=scene)
+    z = phasors(finger, touches)
     time = np.arange(samples) / RATE_HZ
     drive = np.array([each.drive_hz for each in touches])[:, None]
     cycles = rng.uniform(size=(len(touches), 1)) + drive * time + drift_hz_per_s * time**2 / 2
     turn = np.exp(2j * math.pi * cycles)[..., None]
-    out = (z[:, None, 0] * turn + z[:, None, 1] * turn**2).real
+    out = (z[:, None] * turn).real
     out[..., 2] += scene.gravity_g
     out += np.repeat([scene.noise_g, scene.noise_dps], 3) * rng.standard_normal(out.shape)
     ends = np.repeat([scene.range_g, scene.range_dps], 3)
