@@ -11,6 +11,7 @@ from skinfab.progress import silent
 
 def test_the_whole_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(nail_window, "LENGTHS", (8, 33, 128))
+    monkeypatch.setattr(nail_window, "_TIMED", 2)
     small = Protocol(participants=2, training=4, rounds=3, estimates=2, samples=128)
     found = nail_window.run(tmp_path, repeats=1, progress=silent, protocol=small)
     assert sorted(each.name for each in tmp_path.iterdir()) == ["nail_window.csv", "nail_window.png", "nail_window.txt"]

@@ -61,7 +61,10 @@ def test_train_says_it_in_words(logs: Path, tmp_path: Path, capsys: pytest.Captu
 def test_run_on_a_log(logs: Path, model: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     capsys.readouterr()
     log = str(logs / "participant-1.csv")
-    assert main(["nail", "run", str(model), log, "--labels", str(logs / "labels.csv"), "-o", str(tmp_path / "o"), "--json"]) == 0
+    assert (
+        main(["nail", "run", str(model), log, "--labels", str(logs / "labels.csv"), "--every", "16", "-o", str(tmp_path / "o"), "--json"])
+        == 0
+    )
     found = result(capsys)
     assert sorted(each.name for each in (tmp_path / "o").iterdir()) == FILES
     assert json.loads((tmp_path / "o/result.json").read_text()) == found and found["simulated"] and found["window_readings"] == 33
@@ -77,7 +80,10 @@ def test_run_on_a_log(logs: Path, model: Path, tmp_path: Path, capsys: pytest.Ca
 
 def test_run_says_it_in_words(logs: Path, model: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     capsys.readouterr()
-    assert main(["nail", "run", str(model), str(logs / "participant-2.csv"), "--window", "16", "-o", str(tmp_path / "o")]) == 0
+    assert (
+        main(["nail", "run", str(model), str(logs / "participant-2.csv"), "--window", "16", "--every", "64", "-o", str(tmp_path / "o")])
+        == 0
+    )
     said = capsys.readouterr()
     assert "participant-2.csv (simulated):" in said.out and "windows of 11.4 ms" in said.out and "the motor turned at" in said.out
 
@@ -85,14 +91,14 @@ def test_run_says_it_in_words(logs: Path, model: Path, tmp_path: Path, capsys: p
 def test_run_on_a_port(model: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     capsys.readouterr()
     finger, stream = participant(np.random.default_rng([0, 1])), nail_stream()
-    frames = list(itertools.islice(nail_frames(finger, [None, TESTS["pins6"][0], TESTS["pins6"][5]], hold_s=0.5), 2100))
+    frames = list(itertools.islice(nail_frames(finger, [None, TESTS["pins6"][0], TESTS["pins6"][5]], hold_s=0.4), 1680))
     with PtyServer(stream, frames) as device:
-        assert main(["nail", "run", str(model), "--port", str(device.path), "--seconds", "2.5", "-o", str(tmp_path / "o")]) == 0
+        assert main(["nail", "run", str(model), "--port", str(device.path), "--seconds", "1.8", "-o", str(tmp_path / "o")]) == 0
     said = capsys.readouterr().out
     assert "none" in said.splitlines()[0] and "confidence" in said and "to the decision:" in said
     found = json.loads((tmp_path / "o/result.json").read_text())
     latency = found["latency_ms"]
-    assert found["simulated"] and found["frames"] + found["lost"] <= 2100 and found["frames"] > 1800
+    assert found["simulated"] and found["frames"] + found["lost"] <= 1680 and found["frames"] > 1400
     assert 0 < latency["median"] <= latency["p99"] <= latency["worst"] and sum(latency["histogram"]["counts"]) == found["windows"]
     assert found["touched"]["none"] > 0.2 * found["windows"]
 

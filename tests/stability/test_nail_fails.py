@@ -12,7 +12,7 @@ from skinfab.fingertip.nail.protocol import Protocol, Session, sessions
 from skinfab.fingertip.nail.reader import Reader
 from skinfab.fingertip.nail.simulator import RATE_HZ, Scene, readings
 
-SMALL = Protocol(participants=4, training=5, rounds=4, estimates=1, samples=512)
+SMALL = Protocol(participants=3, training=5, rounds=5, estimates=1, samples=256)
 CHANCE = 1 / 12
 
 
@@ -25,12 +25,12 @@ def usual() -> list[Session]:
     return people()
 
 
-def published(each: Session, windows: np.ndarray | None = None, *, samples: int = 512) -> float:
+def published(each: Session, windows: np.ndarray | None = None, *, samples: int = 256) -> float:
     model = fit_histograms(learn(each).names, each.training.classes, each.training.readings[:, 0, :samples], rate_hz=RATE_HZ)
     return float((model.decide(each.rounds.readings[:, 0, :samples] if windows is None else windows) == each.rounds.classes).mean())
 
 
-def improved(each: Session, samples: int = 512) -> float:
+def improved(each: Session, samples: int = 256) -> float:
     model, windows = learn(each), asked(each, samples)
     return float((model.decide(windows, drive_hz=frequency(windows, model)).classes == each.rounds.classes).mean())
 

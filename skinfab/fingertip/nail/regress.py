@@ -56,8 +56,8 @@ def foot(x_mm: ArrayLike, y_mm: ArrayLike, angle_deg: ArrayLike) -> FloatArray:
 
     Examples
     --------
-    >>> foot(4.5, 3.0, 90.0).round(9).tolist(), foot(3.0, 6.0, np.nan).tolist()
-    ([4.5, 0.0], [3.0, 6.0])
+    >>> foot(4.5, 3.0, 45.0).round(9).tolist(), foot(3.0, 6.0, np.nan).tolist()
+    ([0.75, -0.75], [3.0, 6.0])
     """
     place = np.stack(np.broadcast_arrays(np.asarray(x_mm, dtype=float), np.asarray(y_mm, dtype=float)), axis=-1)
     angle = np.radians(np.asarray(angle_deg, dtype=float))[..., None]

@@ -40,8 +40,8 @@ def test_regression_beats_classes_and_probabilities(people: list[Session]) -> No
         hard = np.eye(len(model.touched))[decided.probability.argmax(axis=1)]
         found.setdefault("class", []).append(errors(by_probability(model, aimed, hard), truth))
     mean = {name: np.mean(each, axis=0) for name, each in found.items()}
-    assert mean["regression"][0] < 0.85 * mean["weighted"][0] < 0.85 * mean["class"][0]
-    assert mean["regression"][1] < mean["weighted"][1] < mean["class"][1]
+    assert mean["regression"][0] < 0.8 * min(mean["weighted"][0], mean["class"][0])
+    assert mean["regression"][1] < 0.95 * min(mean["weighted"][1], mean["class"][1])
 
 
 def test_a_force_from_amplitudes(people: list[Session]) -> None:
