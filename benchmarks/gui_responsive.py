@@ -20,7 +20,7 @@ from pathlib import Path
 import numpy as np
 
 ROOT = Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(ROOT / "tests"))
+sys.path[:0] = [str(ROOT), str(ROOT / "tests")]  # in this order: tests/gui is not gui
 
 from outside import FLAT, OBJECT, Window  # noqa: E402
 from screen import Screen, missing, until  # noqa: E402

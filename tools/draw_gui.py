@@ -16,7 +16,7 @@ import numpy as np
 from PIL import Image
 
 ROOT = Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(ROOT / "tests"))
+sys.path[:0] = [str(ROOT), str(ROOT / "tests")]  # in this order: tests/gui is not gui
 
 from outside import FLAT, OBJECT, Window  # noqa: E402
 from screen import Screen, missing, until  # noqa: E402

@@ -291,3 +291,20 @@ def test_an_empty_view_says_what_to_do_and_a_material_that_is_missing_is_a_probl
     root.update()
     (problem,) = session.problems
     assert "no-such-ink" in problem.text
+
+
+@pytest.mark.parametrize("size", ["600x700+0+0", "1200x500+0+0"])
+def test_what_is_shown_whole_stays_whole_in_a_view_of_another_shape(window, size):
+    view, before = window.view, window.view.plane
+    window.root.geometry(size)
+    window.root.update()
+    low, high = (view.plane.to_px(corner) for corner in view.sheet.box)
+    width, height = view.surface.size
+    assert view.plane != before and (low > 24).all() and (high < (width, height)).all()
+    # As large as it fits: one way or the other it reaches from border to border.
+    assert min(width - np.ptp([low[0], high[0]]), height - np.ptp([low[1], high[1]])) < 24 + 2 * 44 + 8
+    view.zoom(2.0)
+    zoomed = view.plane
+    window.root.geometry("900x700+0+0")
+    window.root.update()
+    assert view.plane.scale == zoomed.scale, "what was chosen is not changed"
