@@ -14,6 +14,8 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from skinfab.fingertip.force.contact import Hemisphere
+    from skinfab.fingertip.force.contact_mesh import TipMesh
     from skinfab.fingertip.force.logs import WrenchLog
     from skinfab.fingertip.force.motion import Limits, Motion
     from skinfab.readout.frame import Stream
@@ -63,6 +65,8 @@ def watch_port(
     seconds: float | None = None,
     baud: int | None = None,
     least_force: float | None = None,
+    surface: Hemisphere | TipMesh | None = None,
+    tare: float = 0.0,
     quiet: bool = False,
 ) -> Watched:
     """Watch a port until Ctrl-C, or for a while, and tell contacts and motions as they come.
@@ -76,13 +80,18 @@ def watch_port(
     baud : int, optional
     least_force : float, optional
         N; weaker is no contact.
+    surface : Hemisphere or TipMesh, optional
+        The fingertip.
+    tare : float, s
+        For so long nothing touches the finger: what it reads then is its offset, and is taken off all that follows.
     quiet : bool
         Tell nothing.
 
     Raises
     ------
     InputError
-        The port cannot be opened, sends nothing, does not send the six components, or does not say how many samples come a second.
+        The port cannot be opened, sends nothing, does not send the six components, does not say how many samples come a second,
+        or something touched the finger while it was to rest.
     """
     import numpy as np
 
@@ -96,15 +105,16 @@ def watch_port(
     rows: list[tuple[float, ...]] = []
     latency: list[float] = []
     motions: dict[float, Motion] = {}
-    locate(np.array([[0.0, 0.0, -1.0]]), np.zeros((1, 3)))  # compiled now: the first sample of the port would wait a second for it
+    # Compiled now: the first sample of the port would wait a second for it.
+    locate(np.array([[0.0, 0.0, -1.0]]), np.zeros((1, 3)), surface)
     with SerialPort(port, baud=baud or BAUD) as source:
         stream = source.stream
         columns = _columns(stream, port)
         if not stream.rate_hz:
             raise InputError(f"{port} does not say how many samples come a second; let the device describe its stream (docs/readout.md)")
         least = LEAST_FORCE_N if least_force is None else least_force
-        watch = MotionWatch(limits, rate_hz=stream.rate_hz, least_force=least)
-        teller = _Teller(least, quiet)
+        watch = MotionWatch(limits, rate_hz=stream.rate_hz, surface=surface, least_force=least)
+        teller, rest = _Teller(least, surface, quiet), _Rest(stream.name, tare)
         clock, end = HostClock(), time.monotonic() + (seconds or math.inf)
         missing = 0
         try:
@@ -115,7 +125,9 @@ def watch_port(
                 if not frame.valid[columns].all() or frame.saturated[columns].any():
                     missing += 1
                     continue
-                wrench = frame.values[columns]
+                wrench = rest.less(frame.device_time, frame.values[columns])
+                if wrench is None:
+                    continue
                 new = watch.step(frame.device_time, wrench[:3], wrench[3:])
                 latency.append(clock.now() - frame.host_time)
                 rows.append((frame.device_time, *wrench.tolist()))
@@ -126,7 +138,8 @@ def watch_port(
             signal.setitimer(signal.ITIMER_REAL, 0)  # the way to end it: it has got through, and is not to come a second time
         counts = source.counts
     if not rows:
-        raise InputError(f"{port} sent no whole sample; is the sensor running?")
+        after = f" after the {tare:g} s in which it rests" if tare else ""
+        raise InputError(f"{port} sent no whole sample{after}; is the sensor running?")
     table = np.array(rows)
     notes = [
         f"{count} samples were {how}" for how, count in (("lost", counts.lost), ("damaged", counts.bad), ("late", counts.late)) if count
@@ -134,6 +147,38 @@ def watch_port(
     notes += [f"{missing} samples lacked a component or were saturated, and were passed over"] * bool(missing)
     log = WrenchLog(stream.name, table[:, 0], table[:, 1:4], table[:, 4:], simulated=stream.simulated)
     return Watched(log, tuple(motions.values()), np.array(latency), stream.simulated, tuple(notes))
+
+
+class _Rest:
+    """Gathers what the finger reads while it rests, and takes it off afterwards."""
+
+    def __init__(self, name: str, seconds: float) -> None:
+        self._name, self._seconds = name, seconds
+        self._rows: list[tuple[float, NDArray[np.float64]]] = []
+        self._offset: NDArray[np.float64] | None = None
+
+    def less(self, now: float, wrench: NDArray[np.float64]) -> NDArray[np.float64] | None:
+        """The wrench without the offset; None while the finger rests."""
+        if not self._seconds:
+            return wrench
+        if self._offset is None:
+            if not self._rows or now - self._rows[0][0] < self._seconds:
+                self._rows.append((now, wrench))
+                return None
+            self._offset = self._found()
+        return wrench - self._offset
+
+    def _found(self) -> NDArray[np.float64]:
+        import numpy as np
+
+        from skinfab.fingertip.force.logs import WrenchLog
+        from skinfab.fingertip.force.tare import tared
+
+        table = np.array([row for _, row in self._rows])
+        log = WrenchLog(self._name, np.array([now for now, _ in self._rows]), table[:, :3], table[:, 3:])
+        tared(log, seconds=self._seconds)  # raises where something touched
+        mean: NDArray[np.float64] = table.mean(axis=0)
+        return mean
 
 
 def _columns(stream: Stream, port: str) -> list[int]:
@@ -148,8 +193,8 @@ def _columns(stream: Stream, port: str) -> list[int]:
 class _Teller:
     """Says where the finger is touched, when it is let go, and what moves."""
 
-    def __init__(self, least_force: float, quiet: bool) -> None:
-        self._least, self._quiet = least_force, quiet
+    def __init__(self, least_force: float, surface: Hemisphere | TipMesh | None, quiet: bool) -> None:
+        self._least, self._surface, self._quiet = least_force, surface, quiet
         self._touching, self._next = False, -math.inf
 
     def step(self, now: float, wrench: Any, new: list[Motion]) -> None:
@@ -163,7 +208,7 @@ class _Teller:
 
         force = math.sqrt(float(wrench[:3] @ wrench[:3]))
         if force >= self._least and now >= self._next:
-            found = locate(wrench[None, :3], wrench[None, 3:], least_force=self._least)
+            found = locate(wrench[None, :3], wrench[None, 3:], self._surface, least_force=self._least)
             x, y, z = found.point[0].tolist()
             word = f"; {found.words(0)}" if found.flags[0] else ""
             steps.say([f"{now:.2f} s, {force:.2f} N at {x:.1f}, {y:.1f}, {z:.1f} mm{word}"], kind="contact")

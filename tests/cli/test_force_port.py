@@ -69,3 +69,19 @@ def test_a_silent_port_is_told() -> None:
     made.valid[:] = False
     with PtyServer(made.stream, made) as device, pytest.raises(InputError, match="no whole sample"):
         watch_port(str(device.path), limits=LIMITS, seconds=0.5)
+
+
+def test_an_offset_is_taken_off_after_a_rest() -> None:
+    made = recording(3.0)
+    log, _ = grasp_log(seed=3, episodes=4)
+    with PtyServer(made.stream, made, rate_hz=0, kind=FRAME_64) as device:
+        watched = watch_port(str(device.path), limits=LIMITS, seconds=2, tare=0.5, quiet=True)
+    offset = log.force[:100].mean(axis=0)
+    assert len(watched.log) == len(watched.latency_s) == 500 and np.abs(offset).max() > 0.01
+    assert watched.log.force == pytest.approx(made.values[100:, :3] - offset)
+
+
+def test_a_touch_while_it_is_to_rest_is_refused() -> None:
+    made = recording(3.0)
+    with PtyServer(made.stream, made, rate_hz=0) as device, pytest.raises(InputError, match="something touches"):
+        watch_port(str(device.path), limits=LIMITS, seconds=2, tare=2.0, quiet=True)

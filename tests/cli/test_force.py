@@ -1,0 +1,121 @@
+"""`skinfab force`: simulate, train, run and bench of textures, gravity and liquids, and the ways in which they are used wrongly."""
+
+import csv
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from skinfab.cli.main import main
+from skinfab.fingertip.force.logs import write_wrench
+from skinfab.fingertip.force.simulator import MATERIALS, slide
+
+
+def said(capsys: pytest.CaptureFixture[str], *arguments: object) -> dict[str, Any]:
+    """Run with --json: one object on standard output, and nothing else."""
+    assert main(["force", *map(str, arguments), "--json"]) == 0
+    result: dict[str, Any] = json.loads(capsys.readouterr().out)
+    return result
+
+
+@pytest.fixture(scope="module")
+def slides(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("slides")
+    assert main(["force", "simulate", "texture", "-o", str(folder), "--specimens", "3", "--slides", "2", "--seed", "1"]) == 0
+    return folder
+
+
+@pytest.fixture(scope="module")
+def model(slides: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("model")
+    assert main(["force", "train", "texture", *map(str, sorted(slides.iterdir())), "-o", str(folder)]) == 0
+    return folder / "model.npz"
+
+
+def test_textures_from_logs_to_decisions(slides: Path, model: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    logs = sorted(slides.iterdir())
+    assert len(logs) == 36 and logs[0].read_text().startswith("# simulated: true\n# label: ")
+    result = said(capsys, "run", "texture", *logs[::3], "--model", model, "-o", tmp_path)
+    assert result["simulated"] and sum(d["texture"] == d["label"] for d in result["decisions"]) >= 10
+    assert sorted(each.name for each in tmp_path.iterdir()) == ["result.json", "texture.csv", "texture.png"]
+    rows = list(csv.DictReader((tmp_path / "texture.csv").read_text().splitlines()))
+    assert len(rows) == 12 and {row["simulated"] for row in rows} == {"1"}
+
+
+def test_training_tells_what_it_is_worth_on_specimens_held_out(slides: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    result = said(capsys, "train", "texture", *sorted(slides.iterdir()), "-o", tmp_path, "--features", "published")
+    accuracy = result["held_out"]["accuracy"]
+    assert 0.3 < accuracy["low"] < accuracy["value"] <= accuracy["high"] and result["groups"] == 18 and result["simulated"]
+    assert (tmp_path / "confusion.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_labels_may_stand_in_a_table(slides: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    logs = sorted(slides.iterdir())
+    table = "\n".join(f"{log.name},{'rough' if 'towel' in log.name else 'other'},{log.name}" for log in logs)
+    (tmp_path / "labels.csv").write_text(f"log,label,group\n{table}\n")
+    result = said(capsys, "train", "texture", *logs, "--labels", tmp_path / "labels.csv", "-o", tmp_path / "out")
+    assert result["held_out"]["classes"] == ["other", "rough"]
+
+
+def test_a_simulated_model_on_a_real_log_is_warned_of(model: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    log = slide(MATERIALS["towel"], seed=5)
+    write_wrench(type(log)(log.name, log.time, log.force, log.moment), tmp_path / "real.csv")
+    result = said(capsys, "run", "texture", tmp_path / "real.csv", "--model", model, "-o", tmp_path / "out")
+    assert "learned from simulated slides" in result["notes"][0] and result["simulated"]
+
+
+def test_gravity_from_logs_to_a_table(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    said(capsys, "simulate", "gravity", "-o", tmp_path / "logs")
+    truth = {row["log"]: row for row in csv.DictReader((tmp_path / "logs" / "truth.csv").read_text().splitlines())}
+    result = said(capsys, "run", "gravity", *(tmp_path / "logs" / name for name in truth), "-o", tmp_path / "out", "--place-sd", "0.5")
+    assert result["simulated"] and len(result["objects"]) == 5
+    for each in result["objects"]:
+        true = [float(truth[each["log"]][axis]) for axis in ("x_mm", "y_mm", "z_mm")]
+        ours, theirs = (np.linalg.norm(np.subtract(found["centre_mm"], true)) for found in (each, each["published"]))
+        assert ours < 1.5 and each["mass_kg"] == pytest.approx(0.17, abs=5 * each["mass_sd_kg"])
+        assert each["worst_sd_mm"] >= 0.5 and each["lines_meet"] and theirs < 8
+    assert sorted(p.name for p in (tmp_path / "out").iterdir()) == ["gravity.csv", "gravity.png", "result.json"]
+
+
+def test_poor_poses_are_refused_and_nothing_is_written(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    said(capsys, "simulate", "gravity", "-o", tmp_path / "logs", "--span", "1")
+    assert main(["force", "run", "gravity", str(tmp_path / "logs" / "mid.csv"), "-o", str(tmp_path / "out")]) == 3
+    error = capsys.readouterr().err
+    assert "mid.csv" in error and "turn the hand farther" in error and not (tmp_path / "out").exists()
+
+
+def test_liquids(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    made = said(capsys, "simulate", "liquid", "-o", tmp_path / "logs", "--trials", "1")
+    result = said(capsys, "run", "liquid", *made["files"], "-o", tmp_path / "out")
+    assert [cup["liquid"] for cup in result["cups"]] == [cup["label"] == "liquid" for cup in result["cups"]]
+    assert (tmp_path / "out" / "liquid.png").is_file()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "status", "says"),
+    [
+        (["run"], 2, "TOPIC"),
+        (["train", "gravity", "a.csv", "-o", "x"], 2, "invalid choice: 'gravity'"),
+        (["run", "texture", "a.csv", "-o", "x"], 2, "--model"),
+        (["run", "gravity", "nothing.csv", "-o", "x"], 1, "nothing.csv"),
+        (["run", "gravity", "a.csv", "--max-sd", "-1", "-o", "x"], 2, "not a positive number"),
+        (["bench", "smell", "-o", "x"], 2, "'smell' is not measured"),
+        (["run", "gravity", "a.csv", "--spann", "3", "-o", "x"], 2, "'--spann' is not known here"),
+    ],
+)
+def test_wrong_usage(
+    arguments: list[str], status: int, says: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["force", *arguments]) == status
+    assert says in capsys.readouterr().err and not list(tmp_path.iterdir())
+
+
+def test_an_input_is_never_replaced(slides: Path, model: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    log = tmp_path / "texture.csv"
+    log.write_text(sorted(slides.iterdir())[0].read_text())
+    before = log.read_bytes()
+    assert main(["force", "run", "texture", str(log), "--model", str(model), "-o", str(tmp_path)]) == 1
+    assert "would be replaced" in capsys.readouterr().err and log.read_bytes() == before
