@@ -12,7 +12,7 @@ from skinfab.cli import steps
 from skinfab.cli.bench import repeats
 
 #: What is done with the sensor's readings; `skinfab/cli/force_NAME.py` adds its own parsers to the verbs it has.
-TOPICS = ("texture", "gravity", "liquid")
+TOPICS = ("contact", "shape", "texture", "gravity", "liquid")
 
 VERBS = {
     "simulate": "write logs of a simulated sensor, with their labels",
@@ -22,7 +22,12 @@ VERBS = {
 }
 
 #: Where the `run` of each chart is; the same that `skinfab bench` runs.
-BENCHES = {"texture": "skinfab.bench.texture", "gravity": "skinfab.bench.gravity"}
+BENCHES = {
+    "contact": "skinfab.bench.force",
+    "shape": "skinfab.bench.shape",
+    "texture": "skinfab.bench.texture",
+    "gravity": "skinfab.bench.gravity",
+}
 
 Verbs = Mapping[str, "argparse._SubParsersAction[argparse.ArgumentParser]"]
 

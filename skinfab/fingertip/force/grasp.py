@@ -73,6 +73,8 @@ LEARNED = (
     Solid(CUBOID, (60.0, 80.0, 90.0)),
     Solid(CUBOID, (50.0, 50.0, 90.0)),
 )
+#: What the paper reconstructs.
+PAPER = (Solid(SPHERE, (45.0,)), Solid(CYLINDER, (30.0, 120.0)), Solid(CUBOID, (60.0, 80.0, 90.0)))
 NEW = (Solid(SPHERE, (37.0,)), Solid(CYLINDER, (35.0, 120.0)), Solid(CUBOID, (55.0, 65.0, 90.0)))
 
 

@@ -1,0 +1,300 @@
+"""`skinfab force simulate|run contact`: where a fingertip is touched, and whether what it holds slides, leaves or rolls."""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import io
+import json
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from skinfab.cli import steps
+from skinfab.cli.bench import repeats
+from skinfab.cli.record import baud
+
+if TYPE_CHECKING:
+    from skinfab.fingertip.force.contact import Contacts, Hemisphere
+    from skinfab.fingertip.force.contact_mesh import TipMesh
+    from skinfab.fingertip.force.logs import WrenchLog
+    from skinfab.fingertip.force.motion import Motion
+
+_FILES = ("contacts.csv", "events.csv", "contact.png", "result.json")
+_HEAD = ("log", "time_s", "x_mm", "y_mm", "z_mm", "nx", "ny", "nz", "force_n", "inclination_deg", "torsion_nmm", "miss_mm", "sd_mm")
+_TRUTH = "truth.csv"
+
+
+def add_parsers(topics: Mapping[str, argparse._SubParsersAction[argparse.ArgumentParser]]) -> None:
+    """Add the topic to its verbs."""
+    from skinfab.cli.force import add_output, finish
+
+    p = topics["simulate"].add_parser("contact", help="grasps that slide, let go and roll, and the times when they do")
+    p.add_argument("--grasps", metavar="N", type=repeats, default=6, help="logs, a grasp each (default: 6)")
+    p.add_argument("--seed", type=steps.seed, default=0, help="of all chance (default: 0)")
+    add_output(p, "a log a grasp, and truth.csv")
+    finish(p, simulate)
+
+    p = topics["run"].add_parser("contact", help="contact points, and sliding, separation and rolling as events")
+    p.add_argument("logs", metavar="LOG", nargs="*", type=Path, help="columns time, Fx, Fy, Fz (N), Mx, My, Mz (N mm)")
+    p.add_argument("--port", metavar="PORT", help="instead of logs: a port such as /dev/ttyACM0, told as it comes, until Ctrl-C")
+    p.add_argument("--seconds", metavar="S", type=steps.positive, help="of a port: end after so long")
+    p.add_argument("--baud", metavar="N", type=baud, help="of a port (default: 921600)")
+    p.add_argument(
+        "--friction", metavar="DEG", type=_angle, default=31.0, help="friction angle of finger and object (default: 31, that is 0.6)"
+    )
+    p.add_argument(
+        "--tare", metavar="S", type=steps.not_negative, default=0.5, help="untouched at the beginning, taken off (default: 0.5; 0: none)"
+    )
+    p.add_argument("--radius", metavar="MM", type=steps.positive, help="of the fingertip's dome about the sensor's origin (default: 20)")
+    p.add_argument("--tip", metavar="MESH", type=Path, help="instead of a dome: a closed mesh of the fingertip in the sensor's frame, mm")
+    p.add_argument("--least-force", metavar="N", type=steps.not_negative, help="what is weaker is no contact (default: 0.3)")
+    p.add_argument("--truth", metavar="FILE", type=Path, help="CSV of log,kind,start_s,end_s: how well the events are found is told too")
+    add_output(p, "contacts, events, figure and result")
+    finish(p, run)
+
+
+def _angle(text: str) -> float:
+    value = steps.positive(text)
+    if value >= 90:
+        raise argparse.ArgumentTypeError(f"{text} is not below 90 degrees")
+    return value
+
+
+def surface_of(args: argparse.Namespace) -> Hemisphere | TipMesh:
+    """The fingertip that ``--radius`` or ``--tip`` says."""
+    from skinfab.fingertip.force.contact import Hemisphere
+    from skinfab.fingertip.force.contact_mesh import TipMesh
+
+    if args.tip is None:
+        return Hemisphere() if args.radius is None else Hemisphere(args.radius)
+    if args.radius is not None:
+        args.wrong_usage("--radius and --tip are two fingertips; give one")
+    from skinfab.mesh.io import load_mesh
+
+    return TipMesh(load_mesh(args.tip, units="mm").mesh)
+
+
+def simulate(args: argparse.Namespace) -> int:
+    """Write a log a grasp, and what is true of them."""
+    from skinfab.fingertip.force.logs import write_wrench
+    from skinfab.fingertip.force.motion_file import events_csv
+    from skinfab.fingertip.force.motion_simulator import GraspScene, grasp_log
+    from skinfab.staging import staged_folder
+
+    made = [grasp_log(seed=args.seed + k) for k in range(args.grasps)]
+    names = [f"{log.name}.csv" for log, _ in made]
+    truth = {name: events for name, (_, events) in zip(names, made, strict=True)}
+    with staged_folder(args.output) as folder:
+        for name, (log, _) in zip(names, made, strict=True):
+            write_wrench(log, folder / name)
+        (folder / _TRUTH).write_text(events_csv(truth, simulated=dict.fromkeys(names, True)))
+    result = {
+        "simulated": True,
+        "files": [str(args.output / name) for name in (*names, _TRUTH)],
+        "friction_deg": GraspScene.friction_deg,
+        "events": sum(len(each) for each in truth.values()),
+    }
+    if args.json:
+        print(json.dumps(result))
+    else:
+        print(f"{args.output}: {len(made)} simulated grasps with {result['events']} events, and {_TRUTH}")
+    return 0
+
+
+def run(args: argparse.Namespace) -> int:
+    """Locate, find events, write them down, and say what was found."""
+    _require_usage(args)
+    from skinfab.errors import InputError
+    from skinfab.files import require_apart
+    from skinfab.fingertip.force.contact import LEAST_FORCE_N, locate
+    from skinfab.fingertip.force.motion_file import read_events
+
+    require_apart(args.output, _FILES, [*args.logs, *([args.truth] if args.truth else []), *([args.tip] if args.tip else [])])
+    surface, least = surface_of(args), LEAST_FORCE_N if args.least_force is None else args.least_force
+    truth = read_events(args.truth) if args.truth else {}
+    latency: dict[str, float] = {}
+    if args.port is not None:
+        logs, events, latency = _watched(args, surface, least)
+    else:
+        logs, events = _logged(args, surface, least)
+    found = [(locate(log.force, log.moment, surface, least_force=least), each) for log, each in zip(logs, events, strict=True)]
+    if args.truth and (missing := next((log.name for log in logs if log.name not in truth), None)):
+        raise InputError(f"{args.truth} has no event of {missing}; name the logs there as their files")
+    result = _facts(args, logs, found, truth) | ({"latency": latency} if latency else {})
+    _write(args, logs, found, truth, result)
+    if args.json:
+        print(json.dumps(result, allow_nan=False))
+        return 0
+    steps.say(result["notes"])
+    for line in _lines(result):
+        print(line)
+    print(f"{args.output}: {', '.join(_FILES)}")
+    return 0
+
+
+def _require_usage(args: argparse.Namespace) -> None:
+    """Wrong usage where the words contradict each other."""
+    if (args.port is None) == (not args.logs):
+        args.wrong_usage("give logs, or a --port")
+    for name in ("seconds", "baud"):
+        if args.port is None and getattr(args, name) is not None:
+            args.wrong_usage(f"--{name} is for a --port")
+    if args.port is not None and args.truth:
+        args.wrong_usage("--truth is for logs")
+
+
+def _logged(args: argparse.Namespace, surface: Hemisphere | TipMesh, least: float) -> tuple[list[WrenchLog], list[list[Motion]]]:
+    """Logs without the sensor's offset, and the events of each."""
+    from skinfab.errors import InputError
+    from skinfab.fingertip.force.logs import read_wrench
+    from skinfab.fingertip.force.motion import Limits, MotionWatch, find_motions
+    from skinfab.fingertip.force.tare import tared
+    from skinfab.progress import terminal_progress
+
+    logs: list[WrenchLog] = []
+    events = []
+    with terminal_progress(quiet=args.json) as progress:
+        for k, path in enumerate(args.logs):
+            progress(k / len(args.logs), path.name)
+            log = read_wrench(path)
+            if any(log.name == other.name for other in logs):
+                raise InputError(f"two logs are called {log.name}; give each a name of its own")
+            if not math.isfinite(log.rate_hz):
+                raise InputError(f"{path} has a single row; that is no log of a motion")
+            log = tared(log, seconds=args.tare) if args.tare else log
+            watch = MotionWatch(Limits(args.friction), rate_hz=log.rate_hz, surface=surface, least_force=least)
+            logs.append(log)
+            events.append(find_motions(log.time, log.force, log.moment, watch))
+        progress(1.0, "done")
+    return logs, events
+
+
+def _watched(
+    args: argparse.Namespace, surface: Hemisphere | TipMesh, least: float
+) -> tuple[list[WrenchLog], list[list[Motion]], dict[str, float]]:
+    """What a port sent, its events, and how long decisions took."""
+    from dataclasses import replace
+
+    from skinfab.cli.force_port import watch_port
+    from skinfab.fingertip.force.motion import Limits
+
+    live = watch_port(
+        args.port,
+        limits=Limits(args.friction),
+        seconds=args.seconds,
+        baud=args.baud,
+        least_force=least,
+        surface=surface,
+        tare=args.tare,
+        quiet=args.json,
+    )
+    return [replace(live.log, notes=live.notes)], [list(live.motions)], live.latency
+
+
+def _facts(
+    args: argparse.Namespace,
+    logs: Sequence[WrenchLog],
+    found: Sequence[tuple[Contacts, list[Motion]]],
+    truth: Mapping[str, Sequence[Motion]],
+) -> dict[str, Any]:
+    from skinfab.fingertip.force.contact import FLAGS
+
+    out: dict[str, Any] = {
+        "friction_deg": args.friction,
+        "simulated": any(log.simulated for log in logs),
+        "logs": {},
+        "notes": [note for log in logs for note in log.notes],
+    }
+    for log, (contacts, events) in zip(logs, found, strict=True):
+        touching = contacts.touching
+        out["logs"][log.name] = {
+            "sha256": log.sha256,
+            "simulated": log.simulated,
+            "samples": len(log),
+            "touching": int(touching.sum()),
+            "flags": {words: int(((contacts.flags & bit) != 0).sum()) for bit, words in FLAGS.items()},
+            "median_sd_mm": float(f"{_median(contacts.sd_mm[touching]):.4g}") if touching.any() else None,
+            "events": [{"kind": e.kind, "start_s": e.start, "end_s": None if e.lasting else e.end, "told_s": e.told} for e in events],
+        }
+    if truth:
+        from skinfab.fingertip.force.motion_score import figures, score
+
+        judged = [score(events, truth[log.name], end=float(log.time[-1])) for log, (_, events) in zip(logs, found, strict=True)]
+        out["evaluation"] = {
+            kind: {key: asdict(value) if key in ("precision", "recall") else value for key, value in of.items()}
+            for kind, of in figures(judged).items()
+        }
+    finite: dict[str, Any] = _finite(out)
+    return finite
+
+
+def _median(values: Any) -> float:
+    import numpy as np
+
+    return float(np.median(values))
+
+
+def _finite(value: Any) -> Any:
+    """JSON has no NaN: what is not known is null."""
+    if isinstance(value, dict):
+        return {key: _finite(each) for key, each in value.items()}
+    if isinstance(value, list):
+        return [_finite(each) for each in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def _write(
+    args: argparse.Namespace,
+    logs: Sequence[WrenchLog],
+    found: Sequence[tuple[Contacts, list[Motion]]],
+    truth: Mapping[str, Sequence[Motion]],
+    result: dict[str, Any],
+) -> None:
+    from skinfab.fingertip.force.motion_figure import draw_motions
+    from skinfab.fingertip.force.motion_file import events_csv
+    from skinfab.staging import staged_folder
+
+    events = {log.name: each for log, (_, each) in zip(logs, found, strict=True)}
+    with staged_folder(args.output) as folder:
+        (folder / "contacts.csv").write_text(_contacts_csv(logs, [contacts for contacts, _ in found]))
+        (folder / "events.csv").write_text(events_csv(events, simulated={log.name: log.simulated for log in logs}))
+        draw_motions(logs[0], *found[0], truth.get(logs[0].name, ()), args.friction, folder / "contact.png")
+        (folder / "result.json").write_text(json.dumps(result, indent=1, allow_nan=False) + "\n")
+
+
+def _contacts_csv(logs: Sequence[WrenchLog], found: Sequence[Contacts]) -> str:
+    import numpy as np
+
+    text = io.StringIO()
+    rows = csv.writer(text, lineterminator="\n")
+    rows.writerow([*_HEAD, "flags", "simulated"])
+    for log, c in zip(logs, found, strict=True):
+        numbers = np.column_stack(
+            [log.time, c.point, c.normal, c.force_n, np.degrees(c.inclination_rad), c.torsion_nmm, c.miss_mm, c.sd_mm]
+        )
+        for row, flags in zip(numbers.tolist(), c.flags.tolist(), strict=True):
+            rows.writerow([log.name, *(f"{value:.6g}" for value in row), flags, int(log.simulated)])
+    return text.getvalue()
+
+
+def _lines(result: dict[str, Any]) -> list[str]:
+    lines = []
+    for name, log in result["logs"].items():
+        kinds = [event["kind"] for event in log["events"]]
+        told = ", ".join(f"{kinds.count(kind)} x {kind}" for kind in dict.fromkeys(kinds)) or "nothing moved"
+        made = " (simulated)" if log["simulated"] else ""
+        known = "" if log["median_sd_mm"] is None else f", point known to {log['median_sd_mm']:.2g} mm"
+        lines.append(f"{name}{made}: touched in {log['touching']} of {log['samples']} samples{known}; {told}")
+    if "latency" in result:
+        of = result["latency"]
+        lines.append(f"decided after {of['median_us']:.0f} us (99 %: {of['p99_us']:.0f} us, worst {of['worst_us']:.0f} us)")
+    for kind, of in result.get("evaluation", {}).items():
+        rates = [
+            f"{of[key]['value']:.3f} [{of[key]['low']:.3f}, {of[key]['high']:.3f}]" if of[key]["value"] is not None else "-"
+            for key in ("precision", "recall")
+        ]
+        lines.append(f"{kind:11s}precision {rates[0]}  recall {rates[1]}  of {of['true']}")
+    return lines
