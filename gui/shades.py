@@ -49,7 +49,14 @@ def piece_colours(count: int, theme: Theme) -> Bytes:
 
 
 def face_colours(skin: Skin, derived: Derived, shading: str, theme: Theme) -> Bytes:
-    """Of all faces of the mesh, (m, 3); `shading` is one of the session's."""
+    """Of all faces of the mesh, (m, 3), made once for both views; `shading` is one of the session's."""
+    if shading == "preferences":  # other ones with every stroke of the brush, and quickly made
+        return _face_colours(skin, derived, shading, theme)
+    of = (skin.mesh, skin.pieces)
+    return derived.once(f"colours {shading} {theme.name}", of, lambda: _face_colours(skin, derived, shading, theme))
+
+
+def _face_colours(skin: Skin, derived: Derived, shading: str, theme: Theme) -> Bytes:
     bare = _BARE[theme.name]
     colours = np.full((len(skin.mesh.F), 3), bare, dtype=np.uint8)
     if shading == "preferences":

@@ -60,7 +60,7 @@ class Piece:
         """
         return self.UV[self.topology.boundary_loops[0]]
 
-    @property
+    @cached_property
     def size(self) -> tuple[float, float]:
         """Width and height of the flat bounding box, mm."""
         w, h = np.ptp(self.UV, axis=0)

@@ -73,10 +73,11 @@ class Sheet:
 
     def prepared(self) -> Sheet:
         """Itself, with all there is to know of it known."""
-        assert self.sides is not None and self.edges is not None
+        assert self.sides is not None and self.edges is not None and self.box is not None
+        assert all(piece.size for piece in self.pieces)
         return self
 
-    @property
+    @cached_property
     def box(self) -> tuple[Float, Float]:
         """Lower left and upper right corner of all pieces, mm of the sheet."""
         if not len(self.UV):

@@ -56,3 +56,14 @@ def test_painted_faces_are_told_apart(skin, theme):
 
 def test_more_pieces_than_colours_begin_again():
     assert np.array_equal(piece_colours(12, DARK)[10], piece_colours(1, DARK)[0])
+
+
+def test_both_views_share_what_is_kept_and_strokes_of_the_brush_are_not(skin):
+    derived = Derived()
+    kept = {(s, t.name): face_colours(skin, derived, s, t) for s in ("pieces", "distortion") for t in (LIGHT, DARK)}
+    assert len({colours.tobytes() for colours in kept.values()}) == 4
+    for (shading, name), colours in kept.items():
+        assert face_colours(replace(skin, seed=9), derived, shading, LIGHT if name == "light" else DARK) is colours
+    one_less = face_colours(replace(skin, pieces=skin.pieces[:1]), derived, "pieces", LIGHT)
+    assert one_less[1].tolist() == kept["pieces", "light"][2].tolist()
+    assert face_colours(skin, derived, "preferences", LIGHT) is not face_colours(skin, derived, "preferences", LIGHT)
