@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from skinfab.bench.flatten import REPEATS, read_csv, write_csv
 from skinfab.bench.timing import one_processor
+from skinfab.fingertip.array.ablation import ablation
 from skinfab.fingertip.array.geometry import Geometry
 from skinfab.fingertip.array.simulator import Device
 from skinfab.fingertip.array.study import IMPROVED, PUBLISHED, locators, rms, rods_on, scan, three_fingers, turners, twirls, worst
@@ -71,7 +72,7 @@ class Tracked:
 
 
 def run(folder: Path, *, repeats: int = REPEATS, progress: Progress = silent) -> dict[str, Any]:
-    """Measure, and write array.csv, array.png, array.txt, array_seed.png and array_twirl.csv into `folder`, which is there already.
+    """Measure, and write array.csv, array.png, array.txt, array_seed.png, array_twirl.csv and array_ablation.csv into `folder`, which is there already.
 
     Returns
     -------
@@ -87,6 +88,7 @@ def run(folder: Path, *, repeats: int = REPEATS, progress: Progress = silent) ->
         rows = measure(repeats=repeats, progress=progress)
     write_csv(rows, folder / "array.csv")
     write_csv(track(), folder / "array_twirl.csv")
+    write_csv(ablation(), folder / "array_ablation.csv")
     # From here on only what the tables hold is used, so that chart and sentence cannot say anything else.
     table, twirl = read_csv(folder / "array.csv"), read_csv(folder / "array_twirl.csv")
     said = sentence(table, twirl)

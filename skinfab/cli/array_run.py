@@ -34,8 +34,7 @@ _HEAD = [
     "line_deg",
     "line_sd_deg",
     "line_sure",
-    "second_axial_mm",
-    "second_angle_deg",
+    "points",
     "peak_axial_mm",
     "peak_angle_deg",
     "peak_state",
@@ -168,7 +167,7 @@ def _facts(readings: Sequence[Reading], watch: ArrayWatch, facts: dict[str, Any]
     notes = [*facts["notes"], *watch.notes]
     for state, words in (
         ("past", "lie farther beyond the first or last ring than can be told"),
-        ("wide", "are explained by no point, no line and no two points: a wide contact, or more than two"),
+        ("wide", "are explained by no point, no line and no few points: a wide contact"),
     ):
         if states[state]:
             notes.append(f"{states[state]} of {len(readings)} frames {words}; their places are not to be trusted")
@@ -208,7 +207,7 @@ def _row(reading: Reading, simulated: bool) -> list[str]:
     def number(value: float) -> str:
         return f"{value:.4f}" if math.isfinite(value) else ""
 
-    line, second = reading.line, reading.match.contacts[1] if reading.state == "two" else None
+    line, points = reading.line, reading.contacts
     place, peak = reading.place, reading.peak
     direction = ["", "", ""]
     if line is not None:
@@ -219,7 +218,7 @@ def _row(reading: Reading, simulated: bool) -> list[str]:
         reading.state,
         *(number(value) for value in (place.axial_mm, math.degrees(place.angle_rad), place.force_n)),
         *direction,
-        *(["", ""] if second is None else [number(second.axial_mm), number(math.degrees(second.angle_rad))]),
+        " ".join(f"{each.axial_mm:.3f}/{math.degrees(each.angle_rad):.2f}/{each.force_n:.3f}" for each in points),
         number(peak.axial_mm),
         number(math.degrees(peak.angle_rad)),
         peak.state,

@@ -12,16 +12,19 @@ import numpy as np
 from skinfab.files import atomic_path
 from skinfab.fingertip.array.judge import QUANTITIES, WAYS, Error
 from skinfab.fingertip.array.matched import ArrayModel
+from skinfab.fingertip.array.peak import PeakFinder
 from skinfab.fingertip.array.watch import Reading
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+    from matplotlib.figure import Figure, SubFigure
 
 _DPI = 150
 #: Told apart without red and green, and in print.
-_STATES = {"point": "#000000", "line": "#0072B2", "two": "#E69F00", "wide": "#CC79A7", "edge": "#56B4E9", "past": "#D55E00"}
+_STATES = {"point": "#000000", "line": "#0072B2", "several": "#E69F00", "wide": "#CC79A7", "edge": "#56B4E9", "past": "#D55E00"}
 _EVENTS = {"touch": "#009E73", "lift": "#777777", "slip": "#D55E00", "roll": "#0072B2"}
+#: Frames whose contours are drawn, and at which parts of a peak.
+_CONTOURS, _PARTS = 6, (0.25, 0.5, 0.75, 0.95)
 _WAYS = {"published": "#000000", "drawn": "#E69F00", "learned": "#D55E00"}
 
 
@@ -36,9 +39,11 @@ def draw_run(readings: Sequence[Reading], model: ArrayModel, path: Path, *, titl
     title : str
     simulated : bool
     """
-    figure = _figure((11.4, 5.6))
-    figure.suptitle(f"{title}{' (simulated)' if simulated else ''}: centre of pressure, directions, events", fontsize=10)
-    skin, times = figure.subplots(1, 2, width_ratios=(1, 1.6))
+    figure = _figure((11.4, 8.2))
+    figure.suptitle(f"{title}{' (simulated)' if simulated else ''}: centre of pressure, directions, events, contours", fontsize=10)
+    upper, lower = figure.subfigures(2, 1, squeeze=False, height_ratios=(1.7, 1)).ravel()
+    skin, times = upper.subplots(1, 2, width_ratios=(1, 1.6))
+    _draw_contours(lower, [reading for reading in readings if reading.place.force_n > 0], model)
     touched = [reading for reading in readings if math.isfinite(reading.place.axial_mm)]
     _draw_skin(skin, touched, model)
     time = [reading.time for reading in readings]
@@ -76,6 +81,31 @@ def _draw_skin(axes: Axes, touched: Sequence[Reading], model: ArrayModel) -> Non
                 axes.plot([centre - dx, centre + dx], [reading.place.axial_mm - dy, reading.place.axial_mm + dy], "-", lw=0.3, color=colour)
     axes.set(xlabel="angle around the finger, degrees", ylabel="place along it, mm from ring 0", xlim=(-180, 180))
     axes.legend(fontsize=7)
+
+
+def _draw_contours(figure: SubFigure, touched: Sequence[Reading], model: ArrayModel) -> None:
+    """Lines of equal deflection, as the seed's figure 6: at the frames of events, and between them where there are few."""
+    from skinfab.fingertip.array.contours import contour
+    from skinfab.fingertip.array.interpolate import Coefficients
+
+    g = model.geometry
+    at = [k for k, reading in enumerate(touched) if any(event.kind in ("touch", "slip", "roll") for event in reading.events)]
+    spread = np.linspace(0, len(touched) - 1, _CONTOURS).astype(int).tolist() if touched else []
+    chosen = sorted([*at[:_CONTOURS], *[k for k in spread if k not in at][: max(_CONTOURS - len(at), 0)]])
+    sinc = Coefficients("sinc", g.shape)
+    for axes, k in zip(figure.subplots(1, _CONTOURS, sharey=True), chosen, strict=False):
+        reading = touched[k]
+        C = sinc(np.where(np.isfinite(reading.Z), reading.Z, 0.0))
+        for peak in PeakFinder(g).all(reading.Z):
+            for part in _PARTS:
+                points, _ = contour(C, sinc.kind, g, peak, part=part)
+                axes.plot(np.degrees(points[:, 1]), points[:, 0], "-", lw=0.8, color="#0072B2")
+        centre = math.degrees(reading.place.angle_rad)
+        axes.plot(centre, reading.place.axial_mm, "+", color="#D55E00")
+        axes.set(xlim=(centre - 90, centre + 90), ylim=(0, (g.rings - 1) * g.ring_pitch), title=f"{reading.time:.2f} s")
+        axes.title.set_fontsize(8)
+        axes.tick_params(labelsize=7)
+    figure.supxlabel(f"degrees; contours at {', '.join(f'{100 * part:.0f}' for part in _PARTS)} % of each peak of the sinc", fontsize=8)
 
 
 def draw_training(model: ArrayModel, errors: Sequence[Error], path: Path, *, simulated: bool) -> None:

@@ -19,7 +19,7 @@ from skinfab.fingertip.array.least_squares import normal_equations, solve
 from skinfab.fingertip.array.matched import ArrayModel, skin_of
 from skinfab.fingertip.array.orientation import Orientation, folded
 from skinfab.fingertip.array.peak import find, highest, without_nan
-from skinfab.fingertip.array.response import normal_window
+from skinfab.fingertip.array.response import add_force, normal_window
 from skinfab.fingertip.array.simulator import LONGEST_MM, contact_line, line_nodes
 from skinfab.tolerances import LINE_RIVAL, LINE_STEP_RAD, LINE_UNSURE_RAD, NEWTON_TACTELS, PEAK_FLAT
 
@@ -240,6 +240,16 @@ class LineFinder:
             cost / max(float((known * known).sum()), 1e-300),
             ambiguous,
         )
+
+    def predicted(self, line: Line) -> FloatArray:
+        """The deflections of a line by the model, (rings, stripes)."""
+        m, g = self.model, self.model.geometry
+        out = np.zeros(g.shape)
+        for t, share in self._nodes.T:
+            along = line.axial_mm + t * line.length_mm / 2 * math.sin(line.line_rad)
+            around = line.angle_rad * g.core_radius + t * line.length_mm / 2 * math.cos(line.line_rad) * self._shrink
+            add_force(out, (line.force_n * share, 0.0, 0.0), (along, around), g.pitch, g.half, g.skin, m.rubber.poisson)
+        return out * m.gains / m.rubber.young
 
     def _best(self, Z: FloatArray, x: float, s: float, top: float) -> tuple[tuple[FloatArray, float, float, int], bool]:
         """Starts in all directions go a few steps; the best of each sector is followed to its end. And whether two are as good."""

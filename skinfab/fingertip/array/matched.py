@@ -9,6 +9,7 @@ have one peak between them, contacts beyond the end, and wide ones.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numba
@@ -21,13 +22,15 @@ from skinfab.fingertip.array.least_squares import normal_equations, solve
 from skinfab.fingertip.array.peak import find, highest, without_nan
 from skinfab.fingertip.array.response import add_force, normal_window
 from skinfab.fingertip.array.simulator import Rubber
-from skinfab.tolerances import MATCH_APART, MATCH_MM, MATCH_UNEXPLAINED, NEWTON_TACTELS, PEAK_FLAT
+from skinfab.tolerances import MATCH_APART, MATCH_MM, MATCH_UNEXPLAINED, NEWTON_TACTELS, PEAK_FLAT, PEAK_OTHER
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
 #: Tactels so far from the force are compared, mm, and two to either side at least: beyond, the answer to a force is under its noise.
 _REACH_MM, _REACH = 8.0, 2
+#: Contacts that are told apart at most, and how often each is found anew in what the others leave.
+_MOST, _ROUNDS = 4, 4
 #: Most steps, and how far one may go, pitches.
 _STEPS, _FARTHEST = 30, 0.6
 #: A place so many pitches beyond the last ring's middle is no longer told from others.
@@ -277,6 +280,33 @@ class Matcher:
             pair = sorted((self._contact(*row) for row in two), key=lambda c: -c.force_n)
             return Match(tuple(pair), left, "two", steps)
         return Match((single,), unexplained, "wide", steps)
+
+    def predicted(self, contacts: Sequence[Contact]) -> FloatArray:
+        """The deflections of contacts by the model, (rings, stripes)."""
+        m, g = self.model, self.model.geometry
+        out = np.zeros(g.shape)
+        for each in contacts:
+            place = (each.axial_mm, each.angle_rad * g.core_radius)
+            add_force(out, (each.force_n, 0.0, 0.0), place, g.pitch, g.half, g.skin, m.rubber.poisson)
+        return out * m.gains / m.rubber.young
+
+    def several(self, Z: FloatArray) -> tuple[Contact, ...]:
+        """Up to four contacts, the strongest first: each found in what the others leave, over and over.
+
+        Two that have one peak between them are told as in a call; the others must lie two tactels apart.
+        """
+        found = list(self(Z).contacts)
+        floor = max(self._floor, PEAK_OTHER * highest(Z))
+        while found and len(found) < _MOST:
+            rest = Z - self.predicted(found)
+            if not highest(rest) > floor:
+                break
+            found.append(self._contact(*self.one(rest)[:3]))
+            for _ in range(_ROUNDS):
+                for k in range(len(found)):
+                    rest = Z - self.predicted(found[:k] + found[k + 1 :])
+                    found[k] = self._contact(*self.one(rest)[:3])
+        return tuple(sorted((each for each in found if each.force_n > 0), key=lambda c: -c.force_n))
 
     def _contact(self, x: float, s: float, force: float) -> Contact:
         return Contact(float(x), math.remainder(float(s) / self.model.geometry.core_radius, math.tau), float(force))

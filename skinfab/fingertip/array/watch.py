@@ -12,7 +12,7 @@ from skinfab.errors import InputError
 from skinfab.fingertip.array.geometry import tactel_columns
 from skinfab.fingertip.array.line_fit import Line, LineFinder
 from skinfab.fingertip.array.logs import REST_S, of_recording
-from skinfab.fingertip.array.matched import ArrayModel, Match, Matcher
+from skinfab.fingertip.array.matched import ArrayModel, Contact, Match, Matcher
 from skinfab.fingertip.array.peak import Peak, PeakFinder
 from skinfab.fingertip.array.simulator import deflection
 from skinfab.fingertip.array.tracking import Event, Place, Tracker
@@ -23,8 +23,6 @@ FloatArray = NDArray[np.float64]
 
 #: A frame is touched where a tactel reads more than so many standard deviations: one false one in half a million readings.
 SIGMAS = 5.0
-#: A line is the simpler word for what two forces explain, where it leaves no more than this times as much.
-_LINE_FOR_TWO = 1.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,14 +33,18 @@ class Reading:
     ----------
     time : float, s
     state : str
-        ``none``, ``point``, ``line``, ``two`` contacts, ``edge`` (beyond the first or last ring), ``past`` (farther out than can be
-        told) or ``wide`` (none of these explains it).
+        ``none``, ``point``, ``line``, ``several`` points, ``edge`` (beyond the first or last ring's middle), ``past`` (farther out
+        than can be told) or ``wide`` (none of these explains it).
     place : Place
+        Of several points their middle, as far as one line tells it.
     line : Line or None
         None where nothing touches.
-    match : Match
+    contacts : tuple of Contact
+        Points, the strongest first; none of a line.
     peak : Peak
         As published: of the windowed sinc.
+    Z : (rings, stripes) float
+        Its deflections.
     saturated : int
         Tactels at the end of their range, which were left out.
     events : tuple of Event
@@ -53,8 +55,9 @@ class Reading:
     state: str
     place: Place
     line: Line | None
-    match: Match
+    contacts: tuple[Contact, ...]
     peak: Peak
+    Z: FloatArray
     saturated: int = 0
     events: tuple[Event, ...] = ()
 
@@ -92,31 +95,43 @@ class Analyser:
         """Take the next frame's deflections, (rings, stripes)."""
         match, peak = self._matcher(Z), self._peaks(Z)
         line = self._lines(Z) if match.contacts else None
+        state, contacts = self._state(Z, match, line)
+        place = _place(time, state, contacts, line)
+        return Reading(time, state, place, line, contacts, peak, Z, saturated, tuple(self._tracker.step(place)))
+
+    def _state(self, Z: FloatArray, match: Match, line: Line | None) -> tuple[str, tuple[Contact, ...]]:
+        """The simplest that explains all of the frame, and its contacts."""
+        if line is None or match.state == "past":
+            return match.state, match.contacts
         known = Z[np.isfinite(Z)]
-        # What noise alone leaves of a weak frame is held against no line, as it is held against no point.
-        allowed = MATCH_UNEXPLAINED + 2 * known.size * self._noise**2 / max(float((known**2).sum()), 1e-300)
-        state = _state(match, line, allowed)
-        place = _place(time, state, match, line)
-        return Reading(time, state, place, line, match, peak, saturated, tuple(self._tracker.step(place)))
+        total = max(float((known**2).sum()), 1e-300)
+        # What noise alone leaves of a weak frame is held against nothing.
+        allowed = MATCH_UNEXPLAINED + 2 * known.size * self._noise**2 / total
+        one = match.contacts[:1] if match.state in ("one", "edge") else ()
+        if one and _left(Z, self._matcher.predicted(one)) <= allowed * total:
+            return ("edge" if match.state == "edge" else "point"), one
+        if _left(Z, self._lines.predicted(line)) <= allowed * total:
+            return "line", ()
+        several = self._matcher.several(Z)
+        if len(several) > 1 and _left(Z, self._matcher.predicted(several)) <= allowed * total:
+            return "several", several
+        return "wide", match.contacts[:1]
 
     def finish(self) -> tuple[Event, ...]:
         """What went on to the end."""
         return self._tracker.finish()
 
 
-def _state(match: Match, line: Line | None, allowed: float) -> str:
-    if line is None or match.state in ("none", "edge", "past"):
-        return match.state
-    if match.state == "one":
-        return "point"
-    return "line" if line.unexplained <= max(_LINE_FOR_TWO * match.unexplained, allowed) else match.state
+def _left(Z: FloatArray, predicted: FloatArray) -> float:
+    """Sum of squares of what is left of a frame."""
+    return float(np.nansum((Z - predicted) ** 2))
 
 
-def _place(time: float, state: str, match: Match, line: Line | None) -> Place:
+def _place(time: float, state: str, contacts: tuple[Contact, ...], line: Line | None) -> Place:
     if line is None:
         return Place(time, math.nan, math.nan, 0.0)
     if state in ("point", "edge", "past"):
-        contact = match.contacts[0]
+        contact = contacts[0]
         return Place(time, contact.axial_mm, contact.angle_rad, contact.force_n)
     return Place(time, line.axial_mm, line.angle_rad, line.force_n)
 
