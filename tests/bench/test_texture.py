@@ -1,0 +1,27 @@
+"""The texture chart: what it measures, and that its sentence says what its table holds."""
+
+from pathlib import Path
+
+import pytest
+
+from skinfab.bench.texture import measure, peak_errors, sentence
+from skinfab.bench.texture_chart import draw
+
+
+def test_interpolation_beats_the_grid_at_every_length() -> None:
+    for n_fft in (128, 512):
+        (f_grid, m_grid), (f_ours, m_ours) = (peak_errors(way, n_fft) for way in ("published", "interpolated"))
+        assert f_ours < f_grid / 8 and m_ours < m_grid / 2
+    # The grid's error is that of a uniform distribution over a step.
+    assert peak_errors("published", 512)[0] == pytest.approx(200 / 512 / 12**0.5, rel=0.1)
+
+
+def test_a_small_table_its_chart_and_its_sentence(tmp_path: Path) -> None:
+    rows = [vars(row) for row in measure(seeds=(0,), specimens=3, slides=2, lengths=(256, 512), repeats=1)]
+    assert {(row["way"], row["n_fft"]) for row in rows} == {(w, n) for w in ("published", "interpolated") for n in (256, 512)}
+    assert all(0 <= row["low"] <= row["accuracy"] <= row["high"] <= 1 for row in rows)
+    said = sentence(rows)
+    ours = next(row for row in rows if row["way"] == "interpolated" and row["n_fft"] == 512)
+    assert said.startswith("Texture, simulated: from 512 samples") and f"{100 * ours['accuracy']:.1f} % of the slides" in said
+    draw(rows, tmp_path / "a.png")
+    assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
