@@ -229,7 +229,7 @@ def test_what_comes_is_recorded_and_never_over_a_file_that_is_there(window):
     tab.choose(SimulatorChoice("strain channels"))
     window.until(lambda: not tab.row.button.instate(["disabled"]))
     tab.row.button.invoke()
-    window.until(lambda: "frames," in tab.row.words["text"])
+    window.until(lambda: "frames," in tab.row.words["text"] and tab.feed.recorded > 50)
     assert tab.row.button["text"] == "End"
     tab.row.button.invoke()
     window.until(lambda: tab.row.words["text"].endswith("frames recorded"))
