@@ -116,7 +116,7 @@ def run(
     protocol = protocol or Protocol()
     outcomes = {}
     for k, test in enumerate(TESTS):
-        part = part_of(progress, _TESTS_DONE * k / len(TESTS), _TESTS_DONE * (k + 1) / len(TESTS))
+        part = part_of(progress, _TESTS_DONE * (k / len(TESTS)), _TESTS_DONE * ((k + 1) / len(TESTS)))
         outcomes[test] = _outcome(test, protocol, seed, part)
     compared = {test: compare({name: of.accuracy[name] for name in CONDITIONS}) for test, of in outcomes.items()}
     write_csv([row for outcome in outcomes.values() for row in _rows(outcome)], folder / "nail.csv")
@@ -124,25 +124,19 @@ def run(
     write_csv(ablate(protocol, seed=seed, progress=part_of(progress, _TESTS_DONE, _TERMS_DONE)), folder / "nail_ablation.csv")
     # From here on only what the tables hold is used, so that charts and sentence cannot say anything else.
     table, pairs, terms = (read_csv(folder / f"nail{part}.csv") for part in ("", "_pairs", "_ablation"))
-    said = sentence(table, pairs)
+    windows = nail_window.run(folder, repeats=repeats, progress=part_of(progress, _TERMS_DONE, 1.0), protocol=protocol)
+    said = f"{sentence(table, pairs)} {windows['sentence']}"
     notes = [
         f"simulated participants ({protocol.participants}, seed {seed}); what the simulator leaves out stands in docs/nail.md",
         *(f"{test}: {found}" for test, found in compared.items()),
+        *windows["notes"],
     ]
     atomic_write(folder / "nail.txt", "\n".join([said, *notes]) + "\n")
     draw_accuracy(table, folder / "nail.png")
     for test, outcome in outcomes.items():
         draw_confusion(outcome, folder / f"nail_confusion_{test}.png")
-    windows = nail_window.run(folder, repeats=repeats, progress=part_of(progress, _TERMS_DONE, 1.0), protocol=protocol)
-    return {
-        "sentence": f"{said} {windows['sentence']}",
-        "notes": notes + windows["notes"],
-        "simulated": True,
-        "rows": table,
-        "pairs": pairs,
-        "ablation": terms,
-        "windows": windows["rows"],
-    }
+    found = {"rows": table, "pairs": pairs, "ablation": terms, "windows": windows["rows"]}
+    return {"sentence": said, "notes": notes, "simulated": True, **found}
 
 
 def _outcome(test: str, protocol: Protocol, seed: int, progress: Progress) -> Outcome:
@@ -180,7 +174,7 @@ def sentence(table: Table, pairs: Table) -> str:
     known = [row for row in rows if row["paper"] is not None]
     near = [row for row in known if row["within"]]
     heads = []
-    for test in TESTS:
+    for test in dict.fromkeys(row["test"] for row in table):
         full, better = (
             next(r for r in table if (r["test"], r["condition"], r["method"]) == (test, FULL, m)) for m in (PUBLISHED, IMPROVED)
         )

@@ -9,9 +9,11 @@ from pathlib import Path
 import pytest
 
 from calibration.bench import calibrate
-from skinfab.bench import readout
+from skinfab.bench import gravity, nail, nail_ablation, readout, texture
 from skinfab.cli.bench import NAMES
 from skinfab.cli.main import main
+from skinfab.fingertip.nail.patterns import EDGES4
+from skinfab.fingertip.nail.protocol import Protocol
 
 SMALL = ["--sizes", "300", "--repeats", "1"]
 
@@ -28,11 +30,17 @@ def test_json_is_all_there_is_on_standard_output(tmp_path: Path, capsys: pytest.
 def fewer(monkeypatch: pytest.MonkeyPatch) -> None:
     """Less of what --sizes does not make less; each measurement as a whole has its own test beside it."""
     monkeypatch.setattr("gcode.bench.TOLERANCES", (0.05, 0.005))
-    monkeypatch.setattr("calibration.bench.control.GAINS", (1.0, 4.0, 7.0))
-    monkeypatch.setattr("calibration.bench.control.DELAYS_S", (0.05, 0.2))
-    monkeypatch.setattr("calibration.bench.control.PERIODS_S", (8.0, 2.0))
+    monkeypatch.setattr("calibration.bench.control.GAINS", (1.0, 4.0))
+    monkeypatch.setattr("calibration.bench.control.DELAYS_S", (0.05,))
+    monkeypatch.setattr("calibration.bench.control.PERIODS_S", (8.0,))
     monkeypatch.setattr(calibrate, "measure", partial(calibrate.measure, seeds=(7,)))
     monkeypatch.setattr(readout, "measure", partial(readout.measure, frames=300))
+    monkeypatch.setattr(texture, "measure", partial(texture.measure, seeds=(0,), specimens=3, slides=2, lengths=(256, 512)))
+    monkeypatch.setattr(gravity, "measure", partial(gravity.measure, trials=3))
+    monkeypatch.setattr(nail_ablation, "TERMS", {nail_ablation.NOTHING: nail_ablation.TERMS[nail_ablation.NOTHING]})
+    for module in (nail, nail_ablation):
+        monkeypatch.setattr(module, "TESTS", {"edges4": EDGES4})
+    monkeypatch.setattr(nail, "run", partial(nail.run, protocol=Protocol(participants=3, training=3, rounds=2, estimates=1, samples=128)))
 
 
 @pytest.mark.usefixtures("fewer")

@@ -17,12 +17,12 @@ FULL = "AxAyAzGxGyGz"
 
 @pytest.fixture(scope="module")
 def outcomes() -> dict[str, Outcome]:
-    """Twice the paper's participants; of ten estimates a trial there is one, which changes the accuracies by less than a point."""
+    """Half as many participants again as in the paper; of ten estimates a trial there is one, which changes the accuracies by less than a point."""
 
     def full(of: Session) -> dict[str, np.ndarray]:
         return published_answers(of, (FULL, "AxAy"))
 
-    protocol = Protocol(participants=20, rounds=4, estimates=1, samples=256)
+    protocol = Protocol(participants=15, rounds=4, estimates=1, samples=256)
     return {test: study(sessions(test, protocol=protocol), full) for test in TESTS}
 
 
