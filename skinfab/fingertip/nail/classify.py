@@ -26,6 +26,8 @@ BoolArray = NDArray[np.bool_]
 
 #: How sure it is to be is chosen among these factors on squared distances: few trials make any model too sure.
 _TEMPERATURES = (1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 9.0)
+#: Turning takes one direction out of the features, so that without any drawing their scatter could not be inverted.
+LEAST_SHRINKAGE = 1e-3
 #: Parts of a cross-validation.
 _FOLDS = 5
 #: Scatter of trials as a part of that of classes, where no class has a second trial that would tell it.
@@ -274,7 +276,7 @@ def fit_phasors(
     rest, spare = _residuals(plain)
     if spare == 0:  # how trials scatter is not known, nor then how sure one may be
         return replace(plain, temperature=_TEMPERATURES[-1])
-    made = replace(plain, shrinkage=float(ledoit_wolf_shrinkage(rest, assume_centered=True)))
+    made = replace(plain, shrinkage=max(float(ledoit_wolf_shrinkage(rest, assume_centered=True)), LEAST_SHRINKAGE))
     return replace(made, temperature=_temperature(made, seed))
 
 
