@@ -143,7 +143,7 @@ class JointController:
         span = robot.calibration.high - robot.calibration.low
         self._freezes = Freezes()
         self._follows = Follows(range_deg=span, late_s=lag_s + delay_s, period_s=period_s)
-        self._safe = 0.0
+        self._safe = self._barred = 0.0
         self._last = Command(0.0, "stop", "no frame yet", math.nan, math.nan, Beyond(), False)
         self._good_at: float | None = None
         self._resumed_at: float | None = None
@@ -170,7 +170,8 @@ class JointController:
         ]
         # Also without a good frame of one of them: the other's is remembered, and that time went by.
         wanted = self._rule.step(time, readings[0], readings[1], self._last.speed)
-        self._follows.step(self._part(new[1]) if readings[1] is not None else None, command=self._last.speed)
+        aim = self._last.target if wanted is None else wanted.target
+        self._follows.step(self._part(new[1]) if readings[1] is not None else None, aim=aim, command=self._last.speed)
         if wanted is None:
             return self._without(time, next(why for why in unfit if why))
         if not math.isfinite(wanted.speed):
@@ -200,10 +201,13 @@ class JointController:
             f"told to go to {way} angles by {self._follows.far:.0f} degrees, the robot's channel {self.robot.calibration.signal} "
             "shows nothing of it: an object or its stop holds the joint, its drive is off or stuck, or its sensor is off"
         )
+        self._barred = wanted.speed
         return Command(0.0, "block", reason, wanted.target, wanted.angle, wanted.beyond, True)
 
     def _run(self, time: float, wanted: Wanted) -> Command:
-        if self._good_at is not None and (self._last.state in ("stop", "block") or not 0 <= time - self._good_at <= HOLD_S + self.period_s):
+        # Away from what holds the joint it goes at once.
+        tried = self._last.state == "block" and wanted.speed * self._barred > 0
+        if self._good_at is not None and (tried or self._last.state == "stop" or not 0 <= time - self._good_at <= HOLD_S + self.period_s):
             self._resumed_at = time
         limit = self.limit
         if self._resumed_at is not None:

@@ -20,6 +20,9 @@ MEAN_S, MEAN_FRAMES = 0.1, 10
 #: A way that is shut is tried again after so long, s, and in vain after twice as long each time, but no longer than the second:
 #: who has grasped something is not pressed again and again, and a hand that was off is back before one looks for a fault.
 SHUT_S, LONGEST_S = 2.0, 8.0
+#: After the first of these times it is also tried where the aim went on by this part of the range: a drive that does not move for a
+#: small command was told so for long while the human held still.
+AIM_PART = 0.15
 
 
 class Way:
@@ -31,17 +34,19 @@ class Way:
         1: towards greater angles; -1: the other way.
     far : float, deg
         Told to go on by so much in vain, it is shut.
+    on : float, deg
+        An aim that is further than when it was shut by so much went on.
     period_s : float
         Between steps.
     """
 
-    def __init__(self, sign: int, *, far: float, period_s: float) -> None:
-        self._sign, self._far, self._period = sign, far, period_s
+    def __init__(self, sign: int, *, far: float, on: float, period_s: float) -> None:
+        self._sign, self._far, self._on, self._period = sign, far, on, period_s
         self.shut = False
         self._wait = SHUT_S
-        self._left = 0.0
+        self._lasts = self._must = 0.0
         self._told = self._shown = math.nan
-        self._end = 0.0
+        self._end = self._aim = 0.0
 
     def step(self, told: float, shown: float) -> bool:
         """What was told until now, deg, and what is shown, in parts of the calibrated readings; did the joint go this way, as told?"""
@@ -55,14 +60,16 @@ class Way:
         self._shown = min(self._shown, shown)
         return as_told
 
-    def judge(self, told: float, now: float) -> None:
+    def judge(self, told: float, now: float, aim: float) -> None:
         """Shut it where it was told to go on in vain; by `now` it was told a little more. Or let it be tried again."""
         if self.shut:
-            self._left -= self._period
-            if self._left <= 0:
+            self._lasts += self._period
+            goes_on = self._sign * aim > self._aim + self._on
+            if self._lasts >= (SHUT_S if goes_on else self._must):
                 self.open(told)
         elif self._sign * told - self._told > self._far:
-            self.shut, self._end, self._left = True, self._sign * now, self._wait
+            self.shut, self._end, self._aim = True, self._sign * now, self._sign * aim
+            self._lasts, self._must = 0.0, self._wait
             self._wait = min(2 * self._wait, LONGEST_S)
 
     def open(self, told: float) -> None:
@@ -92,11 +99,11 @@ class Follows:
 
     >>> follows = Follows(range_deg=70, late_s=0, period_s=0.01)
     >>> for step in range(100):
-    ...     follows.step(0.5, command=100)
+    ...     follows.step(0.5, aim=60, command=100)
     >>> follows.shut(100), follows.shut(-100)
     (True, False)
     >>> for step in range(30):
-    ...     follows.step(0.5 - step / 100, command=-100)
+    ...     follows.step(0.5 - step / 100, aim=30, command=-100)
     >>> follows.shut(100)
     False
     """
@@ -107,10 +114,13 @@ class Follows:
         # The mean shows what was half its length ago.
         self._told = deque([0.0], maxlen=math.ceil(late_s / period_s) + 1 + self._mean // 2)
         self._readings: deque[float] = deque(maxlen=self._mean)
-        self._up, self._down = (Way(sign, far=self.far, period_s=period_s) for sign in (1, -1))
+        self._up, self._down = (Way(sign, far=self.far, on=AIM_PART * range_deg, period_s=period_s) for sign in (1, -1))
 
-    def step(self, reading: float | None, *, command: float) -> None:
-        """Another period under a command, deg/s; a new reading in parts of the calibrated ones: 0 at the least angle, 1 at the greatest."""
+    def step(self, reading: float | None, *, aim: float, command: float) -> None:
+        """Another period under a command, deg/s; a new reading in parts of the calibrated ones: 0 at the least angle, 1 at the greatest.
+
+        `aim` is the angle that is aimed at, deg.
+        """
         self._told.append(self._told[-1] + command * self._period)
         if reading is not None:
             self._readings.append(reading)
@@ -121,7 +131,7 @@ class Follows:
             if way.step(told, shown) and back.shut:
                 back.open(told)
         for way in (self._up, self._down):
-            way.judge(told, self._told[-1])
+            way.judge(told, self._told[-1], aim)
 
     def shut(self, speed: float) -> bool:
         """Would a period of this speed, deg/s, lead further where the joint does not go?"""

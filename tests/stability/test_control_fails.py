@@ -280,6 +280,27 @@ def test_who_held_something_can_let_it_go(branches: tuple[Input, Input], law: La
 
 
 @pytest.mark.parametrize("law", LAWS)
+def test_a_hand_lets_go_as_fast_as_if_nothing_had_been_held(
+    branches: tuple[Input, Input], law: Law, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The human opens by 400 deg/s after squeezing for 14 s: when the joint is 10 degrees off the object."""
+
+    def late() -> int:
+        went, _ = blocked(
+            branches,
+            human=lambda t: 45 + 35 * min(t, 1) if t < 15 else max(80 - 400 * (t - 15), 20),
+            wall=lambda t: 50,
+            seconds=17,
+            law=law,
+        )
+        return int(np.flatnonzero(went[1500:] < 40)[0])
+
+    held = late()
+    monkeypatch.setattr("calibration.control.follows.FAR_PART", np.inf)
+    assert held <= late() + 6
+
+
+@pytest.mark.parametrize("law", LAWS)
 def test_a_hand_that_was_off_is_back_by_itself(branches: tuple[Input, Input], law: Law) -> None:
     """Its drive is off from 2 to 6 s (an emergency stop), and works half as fast as told before and after; the human goes to and fro."""
 

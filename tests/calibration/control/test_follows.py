@@ -18,12 +18,12 @@ def made() -> Follows:
     return Follows(range_deg=RANGE, late_s=0.05, period_s=0.01)
 
 
-def drive(follows: Follows, readings: Iterable[float], speed: float) -> list[bool]:
+def drive(follows: Follows, readings: Iterable[float], speed: float, *, aim: float = 40.0) -> list[bool]:
     """Whether the way of the speed is shut, step by step; where it is, the joint is told 0."""
     shut = []
     for reading in readings:
         shut.append(follows.shut(speed))
-        follows.step(reading, command=0.0 if shut[-1] else speed)
+        follows.step(reading, aim=aim, command=0.0 if shut[-1] else speed)
     return shut
 
 
@@ -69,6 +69,17 @@ def test_a_joint_that_goes_is_never_shut() -> None:
     assert not any(drive(made(), readings.tolist(), 30.0))
 
 
+def test_an_aim_that_goes_on_is_tried_but_not_at_once() -> None:
+    """A dead band: shut while the human rested, 8 s from the next trial when that one bends on."""
+    shut = drive(made(), [0.5] * 2000, RANGE)
+    (third,) = [k for k in range(1, 2000) if shut[k] and not shut[k - 1]][2:3]
+    follows = made()
+    drive(follows, [0.5] * third, RANGE)
+    assert all(drive(follows, [0.5] * 100, RANGE, aim=52.0))
+    assert all(drive(follows, [0.5] * 300, RANGE, aim=49.0))
+    assert not any(drive(follows, [0.5] * 90, RANGE, aim=52.0)[1:])
+
+
 def test_the_other_way_is_open_and_opens_this_one_when_the_joint_goes() -> None:
     follows = made()
     assert drive(follows, [0.5] * 120, RANGE)[-1] and not follows.shut(-RANGE)
@@ -91,7 +102,7 @@ def test_what_the_reading_does_against_the_command_opens_nothing() -> None:
 def test_without_new_frames_nothing_is_judged() -> None:
     follows = made()
     for _ in range(1000):
-        follows.step(None, command=100.0)
+        follows.step(None, aim=40.0, command=100.0)
     assert not follows.shut(100.0)
 
 
