@@ -12,6 +12,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from skinfab.bench import nail_window
 from skinfab.bench.flatten import REPEATS, read_csv, write_csv
 from skinfab.bench.nail_ablation import ablate
@@ -88,6 +90,18 @@ class Difference:
     simulated: bool = True
 
 
+@dataclass(frozen=True)
+class Taken:
+    """How often the published method took one class for one class; by their numbers, 0 is no contact."""
+
+    test: str
+    condition: str
+    was: int
+    taken_for: int
+    trials: int
+    simulated: bool = True
+
+
 def run(
     folder: Path, *, repeats: int = REPEATS, progress: Progress = silent, protocol: Protocol | None = None, seed: int = 0
 ) -> dict[str, Any]:
@@ -121,6 +135,7 @@ def run(
     compared = {test: compare({name: of.accuracy[name] for name in CONDITIONS}) for test, of in outcomes.items()}
     write_csv([row for outcome in outcomes.values() for row in _rows(outcome)], folder / "nail.csv")
     write_csv([row for test, of in compared.items() for row in _differences(test, of)], folder / "nail_pairs.csv")
+    write_csv([row for outcome in outcomes.values() for row in _taken(outcome)], folder / "nail_confusion.csv")
     write_csv(ablate(protocol, seed=seed, progress=part_of(progress, _TESTS_DONE, _TERMS_DONE)), folder / "nail_ablation.csv")
     # From here on only what the tables hold is used, so that charts and sentence cannot say anything else.
     table, pairs, terms = (read_csv(folder / f"nail{part}.csv") for part in ("", "_pairs", "_ablation"))
@@ -158,6 +173,15 @@ def _rows(outcome: Outcome) -> list[Row]:
         rows.append(Row(outcome.test, condition, PUBLISHED, mean, deviation, paper, condition in around, within))
     mean, deviation = 100 * outcome.mean(IMPROVED), 100 * outcome.deviation(IMPROVED)
     return [*rows, Row(outcome.test, FULL, IMPROVED, mean, deviation, math.nan, False, True)]
+
+
+def _taken(outcome: Outcome) -> list[Taken]:
+    return [
+        Taken(outcome.test, condition, was, taken_for, int(trials))
+        for condition in CONDITIONS
+        for (was, taken_for), trials in np.ndenumerate(outcome.confusion[condition].counts)
+        if trials
+    ]
 
 
 def _differences(test: str, found: Comparison) -> list[Difference]:

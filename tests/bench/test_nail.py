@@ -35,7 +35,14 @@ def ran(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, Any],
 def test_tables_charts_and_a_sentence_are_written(ran: tuple[Path, dict[str, Any], list[float]]) -> None:
     folder, found, seen = ran
     charts = ["nail.png", f"nail_confusion_{TEST}.png", "nail_window.png"]
-    assert {p.name for p in folder.iterdir()} >= {"nail.csv", "nail_pairs.csv", "nail_ablation.csv", "nail.txt", *charts}
+    assert {p.name for p in folder.iterdir()} >= {
+        "nail.csv",
+        "nail_pairs.csv",
+        "nail_ablation.csv",
+        "nail_confusion.csv",
+        "nail.txt",
+        *charts,
+    }
     assert all((folder / name).read_bytes().startswith(b"\x89PNG") for name in charts)
     assert seen == sorted(seen) and 0 <= seen[0] and seen[-1] <= 1
     json.dumps(found, allow_nan=False)
@@ -51,6 +58,15 @@ def test_the_table_has_every_condition_beside_the_papers(ran: tuple[Path, dict[s
         assert row["paper"] == (AROUND.get(test, {}) | ACCURACY[test]).get(condition)
         if row["paper"] is not None:
             assert bool(row["within"]) == (abs(row["percent"] - row["paper"]) <= row["deviation"])
+
+
+def test_the_confusion_adds_up_to_the_accuracy(ran: tuple[Path, dict[str, Any], list[float]]) -> None:
+    folder, found, _ = ran
+    taken = [row for row in read_csv(folder / "nail_confusion.csv") if row["condition"] == FULL]
+    right = sum(row["trials"] for row in taken if row["was"] == row["taken_for"])
+    percent = next(row["percent"] for row in found["rows"] if row["condition"] == FULL and row["method"] == PUBLISHED)
+    assert sum(row["trials"] for row in taken) == SMALL.participants * SMALL.rounds * 4
+    assert 100 * right / (SMALL.participants * SMALL.rounds * 4) == pytest.approx(percent)
 
 
 def test_the_sentence_is_the_tables(ran: tuple[Path, dict[str, Any], list[float]]) -> None:
