@@ -15,8 +15,8 @@ if TYPE_CHECKING:
 
 #: How long to wait for a frame before looking whether time is up, s.
 _WAIT_S = 0.2
-#: A contact is said when so many decisions in a row agree: one in between two patterns is no news.
-_AGREE = 2
+#: A contact is said when so many decisions in a row agree: of windows of 33 readings, 8 apart, the fifth shares none with the first.
+_AGREE = 5
 #: Edges of the histogram of latencies, ms.
 _EDGES_MS = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0)
 

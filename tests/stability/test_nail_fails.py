@@ -127,3 +127,13 @@ def test_a_short_windows_noise_is_more_than_what_long_ones_were_learned_with() -
         told.append(float((model.decide(windows).classes == each.rounds.classes).mean()))
         untold.append(float((deaf.decide(windows).classes == each.rounds.classes).mean()))
     assert mean(untold) < mean(told) - 0.02
+
+
+def test_a_second_harmonic_that_is_not_fitted_leaks_into_the_drive() -> None:
+    time = (np.arange(14) - 6.5) / RATE_HZ
+    turn = np.exp(2j * np.pi * 169.0 * time)
+    wave = np.real(turn * np.exp(0.4j) + 0.1 * turn**2)  # 14 readings are 1.7 turns
+    A = np.column_stack([np.ones(14), turn.real, -turn.imag])
+    _, a, b = np.linalg.lstsq(A, wave, rcond=None)[0]
+    assert abs((a + 1j * b) - np.exp(0.4j)) > 0.02
+    assert lock_in_weights(14, RATE_HZ, 169.0) @ wave == pytest.approx(np.exp(0.4j), abs=1e-9)

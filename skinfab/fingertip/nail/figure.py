@@ -32,7 +32,7 @@ def draw_run(told: Sequence[Told], names: Sequence[str], path: Path, *, title: s
     top.set_yticks(range(len(names)), names, fontsize=7)
     top.set_ylim(-0.5, len(names) - 0.5)
     if strange:
-        top.legend(fontsize=7, loc="upper right")
+        top.legend(fontsize=7, loc="lower right", bbox_to_anchor=(1, 1), borderaxespad=0.2)
     rest[0].plot(time, [each.confidence for each in decisions], lw=0.8, color="#555555")
     rest[0].set(ylabel="confidence", ylim=(0, 1.05))
     rest[1].plot(time, [each.continuous.angle_deg for each in decisions], ".", ms=2, color="#0b6e4f")
@@ -40,7 +40,7 @@ def draw_run(told: Sequence[Told], names: Sequence[str], path: Path, *, title: s
     for key, colour in (("x_mm", "#0b6e4f"), ("y_mm", "#b5451b")):
         rest[2].plot(time, [getattr(each.continuous, key) for each in decisions], ".", ms=2, color=colour, label=f"{key[0]}, mm")
     if any(not math.isnan(each.continuous.x_mm) for each in decisions):
-        rest[2].legend(fontsize=7, loc="upper right", ncols=2)
+        rest[2].legend(fontsize=7, loc="lower right", bbox_to_anchor=(1, 1), borderaxespad=0.2, ncols=2)
     rest[2].set(ylabel="foot or pin, mm", xlabel="time, s")
     for axes in (top, *rest):
         axes.grid(True, lw=0.3, alpha=0.6)
