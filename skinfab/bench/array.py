@@ -72,7 +72,7 @@ class Tracked:
 
 
 def run(folder: Path, *, repeats: int = REPEATS, progress: Progress = silent) -> dict[str, Any]:
-    """Measure, and write array.csv, array.png, array.txt, array_seed.png, array_twirl.csv and array_ablation.csv into `folder`, which is there already.
+    """Measure, and write array.csv, .png and .txt, array_seed.png, array_twirl.csv and array_ablation.csv into `folder`, which is there.
 
     Returns
     -------

@@ -59,7 +59,8 @@ def _without(term: str, changes: dict[str, float], devices: int, rods: int) -> W
         figures += [worst(np.concatenate([one.errors(places[name]) for one in scans])) for name in (PUBLISHED, IMPROVED)]
     laid = [_rods(device, rods, changes) for device in each]
     found = [np.concatenate([one.errors(turns[name]) for one in laid]) for name in ("span", IMPROVED)]
-    return Without(term, *figures, worst(found[0]), worst(found[1]), rms(found[1]))
+    along, along_matched, around, around_matched = figures
+    return Without(term, along, along_matched, around, around_matched, worst(found[0]), worst(found[1]), rms(found[1]))
 
 
 def _rods(device: Device, count: int, changes: dict[str, float]) -> Rods:

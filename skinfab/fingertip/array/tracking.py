@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +24,8 @@ TOUCH_N, LIFT_PART = 0.1, 0.5
 SLIP_MM, SLIP_S = 4.0, 0.2
 #: It rolls where it moves on by so much, mm; and stands where it does not for so long, s.
 ROLL_MM, STAND_S = 2.0, 0.7
+#: A slip is over where it is slower than this part of what began it; times of frames are rounded by no more than this, s.
+_SLOW, _ROUNDING_S = 0.5, 1e-6
 
 
 @dataclass(frozen=True)
@@ -63,6 +66,15 @@ class Event:
     end: float
     along_mm: float = 0.0
     around_mm: float = 0.0
+
+
+class _Roll(NamedTuple):
+    """A roll so far: since when, how far on the outside, mm, and where it has come to."""
+
+    start: float
+    along_mm: float
+    around_mm: float
+    at: Place
 
 
 def centre_of_pressure(Z: FloatArray, geometry: Geometry) -> tuple[float, float]:
@@ -108,9 +120,11 @@ class Tracker:
     def _begin(self) -> None:
         self._touched = False
         self._recent: list[Place] = []
-        self._anchor: Place | None = None
-        self._moved: Place | None = None
-        self._rolling: tuple[float, float, float] | None = None
+        #: Where a slip began; where the contact stood, the last frame in which it still did, and where it has come to in rolling.
+        self._slip: Place | None = None
+        self._stood: Place | None = None
+        self._still: Place | None = None
+        self._roll: _Roll | None = None
 
     def follow(self, places: Iterable[Place]) -> tuple[Event, ...]:
         """All events of a sequence of frames, from the start."""
@@ -120,7 +134,7 @@ class Tracker:
 
     def finish(self) -> tuple[Event, ...]:
         """What goes on still, ended."""
-        events = self._end_roll()
+        events = self._end()
         self._begin()
         return tuple(events)
 
@@ -131,54 +145,76 @@ class Tracker:
             if not (place.force_n >= TOUCH_N and known):
                 return []
             self._touched = True
-            self._recent, self._anchor, self._moved = [place], place, place
+            self._stand(place)
             return [Event("touch", place.time, place.time)]
         if place.force_n < LIFT_PART * TOUCH_N:
-            events = [*self._end_roll(), Event("lift", place.time, place.time)]
+            events = [*self._end(), Event("lift", place.time, place.time)]
             self._begin()
             return events
         return self._move(place) if known else []
 
+    def _stand(self, place: Place) -> None:
+        """From here on it has neither slipped nor rolled."""
+        self._recent, self._stood, self._still, self._roll, self._slip = [place], place, place, None, None
+
     def _move(self, place: Place) -> list[Event]:
-        assert self._anchor is not None and self._moved is not None
         last = self._recent[-1]
-        since = [each for each in self._recent if place.time - each.time <= SLIP_S + 1e-9] or [last]
-        far = max(since, key=lambda each: math.hypot(*self._between(each, place)))
-        self._recent = [*since, place]
-        if math.hypot(*self._between(far, place)) >= SLIP_MM:
-            events = [*self._end_roll(), Event("slip", far.time, place.time, *self._between(far, place))]
-            self._recent, self._anchor, self._moved = [place], place, place
+        before = [each for each in self._recent if place.time - each.time <= SLIP_S + _ROUNDING_S] or [last]
+        self._recent = [*before, place]
+        if self._slip is not None:
+            if self._far(last, place) > _SLOW * SLIP_MM / SLIP_S * (place.time - last.time):
+                return []
+            events = self._end(last)
+            self._stand(last)
+            self._recent = [last, place]
             return events
-        along, around = self._between(self._moved, place)
-        if math.hypot(along, around) >= ROLL_MM:
-            if self._rolling is None:
-                self._rolling = (self._anchor.time, 0.0, 0.0)
-            start, a, b = self._rolling
-            self._rolling, self._moved = (start, a + along, b + around), place
-        elif place.time - self._moved.time > STAND_S:
+        far = max(before, key=lambda each: self._far(each, place))
+        if self._far(far, place) >= SLIP_MM:
+            # What stood there until a moment ago slips from that moment on, and did not roll before.
+            self._slip = next(each for each in reversed(before) if self._far(far, each) < SLIP_MM / 4)
+            if self._roll is not None and self._roll.start >= self._slip.time - SLIP_S:
+                self._roll = None
+            return self._end_roll()
+        return self._turn(place)
+
+    def _turn(self, place: Place) -> list[Event]:
+        """Rolling: on from where it stood, by a step of `ROLL_MM` after the other."""
+        assert self._stood is not None and self._still is not None
+        at = self._stood if self._roll is None else self._roll.at
+        if self._far(at, place) >= ROLL_MM:
+            start, along, around = (self._still.time, 0.0, 0.0) if self._roll is None else self._roll[:3]
+            moved = self._between(at, place)
+            self._roll = _Roll(start, along + moved[0], around + moved[1], place)
+        elif self._roll is None:
+            if self._far(at, place) < ROLL_MM / 2:
+                self._still = place
+        elif place.time - self._roll.at.time > STAND_S:
             events = self._end_roll()
-            self._anchor = place
-            if not events:
-                # What creeps on more slowly than rolling goes with the place it is measured from.
-                drift = min(1.0, (place.time - last.time) / STAND_S)
-                self._moved = Place(
-                    self._moved.time,
-                    self._moved.axial_mm + drift * along,
-                    self._moved.angle_rad + drift * around / self._radius,
-                    place.force_n,
-                )
+            self._stood = self._still = place
             return events
         return []
 
+    def _end(self, last: Place | None = None) -> list[Event]:
+        """A slip or a roll that is over, the slip with the last frame of its motion."""
+        if self._slip is not None:
+            end = last or self._recent[-1]
+            event = Event("slip", self._slip.time, end.time, *self._between(self._slip, end))
+            self._slip = None
+            return [event]
+        return self._end_roll()
+
     def _end_roll(self) -> list[Event]:
-        if self._rolling is None or self._moved is None:
+        if self._roll is None:
             return []
-        start, along, around = self._rolling
-        self._rolling = None
-        return [Event("roll", start, self._moved.time, along, around)]
+        start, along, around, at = self._roll
+        self._roll = None
+        return [Event("roll", start, at.time, along, around)]
 
     def _between(self, a: Place, b: Place) -> tuple[float, float]:
         return b.axial_mm - a.axial_mm, self._radius * math.remainder(b.angle_rad - a.angle_rad, math.tau)
+
+    def _far(self, a: Place, b: Place) -> float:
+        return math.hypot(*self._between(a, b))
 
 
 def matched_events(truth: Sequence[Event], found: Sequence[Event], *, slack: float) -> list[tuple[int, int]]:
