@@ -8,7 +8,8 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 PAGES = [
-    ROOT / "docs" / name for name in ("cuts.md", "flattening.md", "calibration.md", "control.md", "contact.md", "logs.md", "readout.md")
+    ROOT / "docs" / name
+    for name in ("cuts.md", "flattening.md", "calibration.md", "control.md", "contact.md", "logs.md", "readout.md", "nail.md")
 ]  # patterns.md has its own test
 
 
