@@ -69,13 +69,14 @@ class Row:
 
 
 def run(folder: Path, *, repeats: int = REPEATS, progress: Progress = silent) -> dict[str, Any]:
-    """Measure, and write force.csv, force.png, force_events.csv and force.txt into `folder`, which is there already.
+    """Measure, and write force.csv, force.png, force_events.csv, force_ablation.csv and force.txt into `folder`, which is there already.
 
     Returns
     -------
     dict
         "sentence", "notes" (what to know of the measurement), "rows" and "events".
     """
+    from skinfab.bench.force_ablation import motions_without
     from skinfab.bench.force_chart import draw
     from skinfab.files import atomic_write
 
@@ -84,8 +85,9 @@ def run(folder: Path, *, repeats: int = REPEATS, progress: Progress = silent) ->
         notes += [] if alone else ["this system cannot keep a process on one processor"]
         rows = measure(repeats=repeats, progress=progress)
     write_csv(rows, folder / "force.csv")
-    events = judge_events(progress=lambda done, what: progress(0.5 + done / 2, what))
+    events = judge_events(progress=lambda done, what: progress(0.5 + 0.4 * done, what))
     write_csv(events, folder / "force_events.csv")
+    write_csv(motions_without(progress=lambda done, what: progress(0.9 + 0.1 * done, what)), folder / "force_ablation.csv")
     table, judged = read_csv(folder / "force.csv"), read_csv(folder / "force_events.csv")
     said = sentence(table, judged)
     atomic_write(folder / "force.txt", "\n".join([said, *notes]) + "\n")

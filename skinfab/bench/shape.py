@@ -104,13 +104,14 @@ class Sizes:
 
 
 def run(folder: Path, *, repeats: int = REPEATS, progress: Progress = silent) -> dict[str, Any]:
-    """Measure, and write shape.csv, shape_sizes.csv, shape_regrasp.csv, shape.png, shape_confusion_*.png, shape_solids.png and shape.txt.
+    """Measure, and write shape*.csv, shape.png, shape_confusion_*.png, shape_solids.png and shape.txt into `folder`.
 
     Returns
     -------
     dict
         "sentence", "notes" (what to know of the measurement), "rows", "sizes" and "regrasp".
     """
+    from skinfab.bench.force_ablation import hands_without
     from skinfab.bench.shape_chart import draw
     from skinfab.files import atomic_write
 
@@ -118,9 +119,10 @@ def run(folder: Path, *, repeats: int = REPEATS, progress: Progress = silent) ->
     with one_processor() as alone:
         notes += [] if alone else ["this system cannot keep a process on one processor"]
         rows, held = measure(repeats=repeats, progress=lambda done, what: progress(0.6 * done, what))
-    again = regrasps(progress=lambda done, what: progress(0.6 + 0.2 * done, what))
-    sizes = reconstructions(progress=lambda done, what: progress(0.8 + 0.2 * done, what))
-    for name, content in (("shape", rows), ("shape_regrasp", again), ("shape_sizes", sizes)):
+    again = regrasps(progress=lambda done, what: progress(0.6 + 0.1 * done, what))
+    sizes = reconstructions(progress=lambda done, what: progress(0.7 + 0.1 * done, what))
+    without = hands_without(progress=lambda done, what: progress(0.8 + 0.2 * done, what))
+    for name, content in (("shape", rows), ("shape_regrasp", again), ("shape_sizes", sizes), ("shape_ablation", without)):
         write_csv(content, folder / f"{name}.csv")
     table, regrasped, solved = (read_csv(folder / f"{name}.csv") for name in ("shape", "shape_regrasp", "shape_sizes"))
     for name, of in held.items():

@@ -2,7 +2,8 @@
 
 The contact is a point on the dome, pushed with a normal force and, across it, a part of what friction bears; static friction
 is more than kinetic. Left out: the object's mass and the hand's springs (loads are drawn, not solved for), a contact with
-an area, and vibrations of slip above the ripple; the detector uses force, angle and point alone, and these are what is simulated.
+an area, tremor, and the ripple of slip: the last two were in and changed no figure. The detector uses force, angle and point
+alone, and these are what is simulated.
 """
 
 from __future__ import annotations
@@ -56,10 +57,6 @@ class GraspScene:
     quick_s, slow_s : pair, s
         How long a sudden change takes, and a slow one.
     roll_mm_s : pair, mm/s
-    ripple : float
-        Of friction while sliding, relatively.
-    tremor : float
-        Of the normal force, relatively.
     noise : SensorNoise
     offset_n, offset_nmm : float, N and N mm
         Standard deviation of the sensor's offset, which stays for a log.
@@ -76,8 +73,6 @@ class GraspScene:
     quick_s: tuple[float, float] = (0.02, 0.06)
     slow_s: tuple[float, float] = (0.6, 1.2)
     roll_mm_s: tuple[float, float] = (6.0, 30.0)
-    ripple: float = 0.05
-    tremor: float = 0.03
     noise: SensorNoise = field(default_factory=SensorNoise)
     offset_n: float = 0.05
     offset_nmm: float = 0.5
@@ -112,7 +107,6 @@ def grasp_log(*, seed: int, scene: GraspScene | None = None, episodes: int = 12)
     friction = math.tan(math.radians(scene.friction_deg)) * (1 + scene.friction_spread * rng.uniform(-1, 1))
     held, load = rng.uniform(*scene.force_n), rng.uniform(*scene.load)
     normal, lean, polar = _Track(0.0), _Track(load), _Track(rng.uniform(-0.5, 0.5))
-    sliding: list[tuple[float, float]] = []
     truth: list[Motion] = []
     t = 1.0
     normal.to(t, 0.0)
@@ -127,7 +121,6 @@ def grasp_log(*, seed: int, scene: GraspScene | None = None, episodes: int = 12)
             lean.to(onset + quick, scene.kinetic)
             lean.to(onset + quick + lasts, scene.kinetic)
             t = onset + quick + lasts
-            sliding.append((onset, t))
             truth.append(Motion(SLIDING, onset, t, onset))
             lean.to(t + quick, load)
             t += quick
@@ -161,7 +154,7 @@ def grasp_log(*, seed: int, scene: GraspScene | None = None, episodes: int = 12)
         t += rng.uniform(*scene.hold_s)
     normal.to(t, held)
     time = np.arange(round(t * scene.rate_hz)) / scene.rate_hz
-    force, moment = _wrench(time, normal, lean, polar, friction, sliding, rng, scene)
+    force, moment = _wrench(time, normal, lean, polar, friction, rng, scene)
     return WrenchLog(f"grasp-{seed}", time, force, moment, "grasp", str(seed), simulated=True), tuple(truth)
 
 
@@ -171,7 +164,6 @@ def _wrench(
     lean: _Track,
     polar: _Track,
     friction: float,
-    sliding: list[tuple[float, float]],
     rng: np.random.Generator,
     scene: GraspScene,
 ) -> tuple[FloatArray, FloatArray]:
@@ -182,12 +174,5 @@ def _wrench(
     first = np.column_stack([np.cos(angle) * math.cos(azimuth), np.cos(angle) * math.sin(azimuth), -np.sin(angle)])
     second = np.cross(out, first)
     tangent = math.cos(across) * first + math.sin(across) * second
-    part = lean.at(time)
-    for start, end in sliding:
-        within = (time >= start) & (time < end)
-        waves = [rng.uniform(5, 20) for _ in range(3)]
-        part[within] *= 1 + scene.ripple * sum(np.sin(2 * math.pi * f * time[within] + rng.uniform(0, 6)) for f in waves) / math.sqrt(1.5)
-    tremor = sum(np.sin(2 * math.pi * rng.uniform(0.5, 4) * time + rng.uniform(0, 6)) for _ in range(3))
-    size = normal.at(time) * (1 + scene.tremor * tremor / math.sqrt(1.5))
-    force = size[:, None] * (-out + (friction * part)[:, None] * tangent)
+    force = normal.at(time)[:, None] * (-out + (friction * lean.at(time))[:, None] * tangent)
     return as_read(force, np.cross(RADIUS_MM * out, force), rng, noise=scene.noise, offset_n=scene.offset_n, offset_nmm=scene.offset_nmm)
