@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from calibration.bench import calibrate
-from skinfab.bench import gravity, nail, nail_ablation, readout, texture
+from skinfab.bench import array, gravity, nail, nail_ablation, readout, texture
 from skinfab.cli.bench import NAMES
 from skinfab.cli.main import main
 from skinfab.fingertip.nail.patterns import EDGES4
@@ -35,6 +35,9 @@ def fewer(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("calibration.bench.control.PERIODS_S", (8.0,))
     monkeypatch.setattr(calibrate, "measure", partial(calibrate.measure, seeds=(7,)))
     monkeypatch.setattr(readout, "measure", partial(readout.measure, frames=300))
+    monkeypatch.setattr(array, "measure", partial(array.measure, densities=("8x8",), devices=1, rods=1))
+    monkeypatch.setattr(array, "track", partial(array.track, logs=1))
+    monkeypatch.setattr(array, "ablation", partial(array.ablation, devices=1, rods=1))
     monkeypatch.setattr(texture, "measure", partial(texture.measure, seeds=(0,), specimens=3, slides=2, lengths=(256, 512)))
     monkeypatch.setattr(gravity, "measure", partial(gravity.measure, trials=3))
     monkeypatch.setattr(nail_ablation, "TERMS", {nail_ablation.NOTHING: nail_ablation.TERMS[nail_ablation.NOTHING]})

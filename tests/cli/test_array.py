@@ -1,0 +1,176 @@
+"""`skinfab array`: simulate, train, run on logs and on a port, bench, and the ways in which it is used wrongly."""
+
+import csv
+import json
+import math
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from skinfab.bench import array as bench
+from skinfab.cli.main import main
+from skinfab.fingertip.array.geometry import Geometry
+from skinfab.fingertip.array.learn import load_array
+from skinfab.fingertip.array.protocols import presses, twirl
+from skinfab.fingertip.array.simulator import Device
+from skinfab.readout.frame import Recording
+from skinfab.readout.logs.log import read_log, write_log
+from skinfab.readout.pty_server import PtyServer
+
+RUN = ["array.png", "events.csv", "frames.csv", "result.json"]
+TRAIN = ["errors.csv", "model.npz", "result.json", "train.png"]
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Logs of one simulated array, and its model."""
+    folder = tmp_path_factory.mktemp("array")
+    assert main(["array", "simulate", "--logs", "2", "--contacts", "20", "--seed", "4", "-o", str(folder / "sim"), "--json"]) == 0
+    logs = [str(folder / "sim" / name) for name in ("presses-1.csv", "presses-2.csv", "rods-1.csv")]
+    assert main(["array", "train", *logs, "-o", str(folder / "train"), "--json"]) == 0
+    return folder
+
+
+def rows(path: Path) -> list[dict[str, str]]:
+    return list(csv.DictReader(path.read_text().splitlines()))
+
+
+def test_what_is_simulated_says_so(made: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    log = read_log(made / "sim/presses-1.csv")
+    assert log.recording.stream.simulated and len(log.recording.stream.channels) == 68
+    assert {each["simulated"] for each in rows(made / "sim/twirl-1-events.csv")} == {"1"}
+    words = ["array", "simulate", "--density", "8x16", "--logs", "1", "--contacts", "1", "-o", str(made / "dense")]
+    assert main(words) == 0 and "8x16" in capsys.readouterr().out
+    assert len(read_log(made / "dense/presses-1.csv").recording.stream.channels) == 8 * 16 + 4
+
+
+def test_the_same_seed_gives_the_same_logs(made: Path, tmp_path: Path) -> None:
+    assert main(["array", "simulate", "--logs", "2", "--contacts", "20", "--seed", "4", "-o", str(tmp_path), "--json"]) == 0
+    for each in tmp_path.iterdir():
+        assert each.read_bytes() == (made / "sim" / each.name).read_bytes()
+
+
+def test_held_out_errors_are_told(made: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert sorted(each.name for each in (made / "train").iterdir()) == TRAIN
+    result = json.loads((made / "train/result.json").read_text())
+    assert result["simulated"] and [len(each["sha256"]) for each in result["made_from"]] == [64] * 3
+    by = {(each["way"], each["quantity"]): each["rms"] for each in result["errors"]}
+    assert by["learned", "axial"] < 0.3 * by["published", "axial"] and by["learned", "line"] < 0.5 * by["published", "line"]
+    model, facts = load_array(made / "train/model.npz")
+    assert model.geometry.skin == pytest.approx(3.8, abs=0.1) and facts["simulated"]
+    logs = [str(made / "sim" / name) for name in ("presses-1.csv", "presses-2.csv")]
+    assert main(["array", "train", *logs, "-o", str(tmp_path / "again")]) == 0
+    said = capsys.readouterr().out
+    assert "on logs that were held out" in said and "published" in said and "line" not in said
+
+
+def test_a_log_is_read(made: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    words = ["array", "run", str(made / "sim/twirl-1.csv"), "--model", str(made / "train/model.npz"), "-o", str(tmp_path / "o")]
+    assert main([*words, "--json"]) == 0
+    result = json.loads(capsys.readouterr().out)
+    assert (
+        sorted(each.name for each in (tmp_path / "o").iterdir()) == RUN and json.loads((tmp_path / "o/result.json").read_text()) == result
+    )
+    assert result["simulated"] and result["frames"] == 100 and sum(result["states"].values()) == 100
+    true = rows(made / "sim/twirl-1-events.csv")
+    assert [each["kind"] for each in result["events"]] == [each["kind"] for each in true]
+    assert [each["kind"] for each in rows(tmp_path / "o/events.csv")] == [each["kind"] for each in true]
+    frames = rows(tmp_path / "o/frames.csv")
+    truth = read_log(made / "sim/twirl-1.csv").recording.column("axial_mm")[6:]
+    off = [float(each["axial_mm"]) - x for each, x in zip(frames, truth.tolist(), strict=True) if each["axial_mm"] and math.isfinite(x)]
+    assert np.sqrt(np.mean(np.square(off))) < 0.3 and {each["simulated"] for each in frames} == {"1"}
+    assert main(words) == 0 and "(simulated): 100 frames" in capsys.readouterr().out
+
+
+def test_without_a_model_the_array_is_as_drawn(made: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["array", "run", str(made / "sim/presses-1.csv"), "-o", str(tmp_path / "o"), "--json"]) == 0
+    result = json.loads(capsys.readouterr().out)
+    assert any("as drawn" in note for note in result["notes"]) and result["states"]["point"] >= 58
+
+
+def test_a_port_is_read_as_it_comes(made: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    recording, truth = twirl(Device(seed=4), seed=4001)
+    slow = recording.stream
+    with PtyServer(slow, recording, rate_hz=60.0) as device:
+        words = ["array", "run", "--port", str(device.path), "--seconds", "3", "--model", str(made / "train/model.npz")]
+        assert main([*words, "-o", str(tmp_path / "o"), "--json"]) == 0
+    result = json.loads(capsys.readouterr().out)
+    assert result["simulated"] and result["frames"] >= 95 and result["latency_ms"]["median"] < 100
+    assert [each["kind"] for each in result["events"]] == [each.kind for each in truth]
+
+
+def test_a_port_that_sends_another_array(made: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    recording = presses(Device(Geometry.of_density("8x16")), 4)
+    with PtyServer(recording.stream, recording) as device:
+        words = ["array", "run", "--port", str(device.path), "--model", str(made / "train/model.npz"), "-o", str(tmp_path / "o")]
+        assert main(words) == 1
+    assert "8 x 16 tactels, and the model 8 x 8" in capsys.readouterr().err and not (tmp_path / "o").exists()
+
+
+def test_bench_writes_all_of_it(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(bench, "measure", partial(bench.measure, densities=("8x8",), devices=1, rods=1))
+    monkeypatch.setattr(bench, "track", partial(bench.track, logs=1))
+    monkeypatch.setattr(bench, "ablation", partial(bench.ablation, devices=1, rods=1))
+    assert main(["array", "bench", "--repeats", "1", "-o", str(tmp_path), "--json"]) == 0
+    result = json.loads(capsys.readouterr().out)
+    names = ["array.csv", "array.png", "array.txt", "array_ablation.csv", "array_seed.png", "array_twirl.csv"]
+    assert result["simulated"] and [Path(file).name for file in result["files"]] == names
+    assert all((tmp_path / name).stat().st_size for name in names)
+    table = {(each["experiment"], each["method"]): each for each in result["rows"]}
+    assert f"{table['along', 'matched']['worst']:.2g} matched" in result["sentence"]
+    assert (tmp_path / "array.txt").read_text().splitlines()[0] == result["sentence"]
+    terms = rows(tmp_path / "array_ablation.csv")
+    first = terms[0]
+    for each in terms[1:]:
+        assert any(each[key] != first[key] for key in first if key != "term"), each["term"]  # else it would not be needed
+
+
+@pytest.mark.parametrize(
+    ("words", "status", "says"),
+    [
+        (["run", "-o", "o"], 2, "give a LOG or --port PORT"),
+        (["run", "a.csv", "--port", "/dev/null", "-o", "o"], 2, "one of them"),
+        (["run", "a.csv", "--seconds", "3", "-o", "o"], 2, "--seconds is for a port"),
+        (["run", "missing.csv", "-o", "o"], 1, "missing.csv"),
+        (["train", "missing.csv", "-o", "o"], 1, "missing.csv"),
+        (["train", "x.csv", "--fill", "1.5", "-o", "o"], 2, "1.5"),
+        (["simulate", "--density", "8", "-o", "o"], 1, "no density"),
+        (["simulate", "--logs", "0", "-o", "o"], 2, "from 1 up"),
+        (["bench", "--repeats", "0", "-o", "o"], 2, "from 1 up"),
+        (["press", "-o", "o"], 2, "press"),
+    ],
+)
+def test_wrong_usage(
+    words: list[str], status: int, says: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["array", *words]) == status
+    assert says in capsys.readouterr().err and not (tmp_path / "o").exists()
+
+
+def test_logs_that_cannot_be_learned_from(made: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    one = made / "sim/presses-1.csv"
+    copy = tmp_path / "copy.csv"
+    copy.write_bytes(one.read_bytes())
+    out = ["-o", str(tmp_path / "o")]
+    assert main(["array", "train", str(one), str(copy), *out]) == 1 and "the same log" in capsys.readouterr().err
+    assert main(["array", "train", str(one), *out]) == 1 and "give at least two" in capsys.readouterr().err
+    dense = presses(Device(Geometry.of_density("8x16")), 20)
+    write_log(dense, tmp_path / "dense.csv")
+    assert main(["array", "train", str(one), str(tmp_path / "dense.csv"), *out]) == 1 and "logs of one array" in capsys.readouterr().err
+    assert not (tmp_path / "o").exists()
+
+
+def test_a_model_of_something_else(made: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "m.npz").write_bytes(b"\x80\x04 pickled")
+    words = ["array", "run", str(made / "sim/presses-1.csv"), "--model", str(tmp_path / "m.npz"), "-o", str(tmp_path / "o")]
+    assert main(words) == 1 and "pickle" in capsys.readouterr().err
+
+
+def test_a_log_is_not_written_over(made: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    recording = read_log(made / "sim/presses-1.csv").recording
+    write_log(Recording.of_frames(recording.stream, list(recording)), tmp_path / "frames.csv")
+    assert main(["array", "run", str(tmp_path / "frames.csv"), "-o", str(tmp_path)]) == 1
+    assert "would be replaced" in capsys.readouterr().err
