@@ -24,9 +24,10 @@ from skinfab.fingertip.force.texture_model import feature_table, train_texture
 from skinfab.progress import Progress, silent
 
 LENGTHS = (128, 256, 512, 1024)
-#: Data sets of six specimens and six slides of each material; of each its own seed.
-SEEDS = (0, 1, 2, 3)
-SPECIMENS = SLIDES = 6
+#: Data sets, of each its own seed, and in each so many specimens of each material and slides over each. Specimens count: with six
+#: of them the best way changes from set to set.
+SEEDS = (0, 1, 2)
+SPECIMENS, SLIDES = 15, 3
 
 WAYS = {"published": published_peaks, "interpolated": interpolated_peaks}
 #: The features whose peaks, or power, each way stands for.

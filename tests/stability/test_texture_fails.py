@@ -24,7 +24,7 @@ STEP = RATE / 512
 
 @pytest.fixture(scope="module")
 def parts() -> tuple[list[Slide], list[str], list[str]]:
-    logs = texture_logs(specimens=4, slides=4, seed=21)
+    logs = texture_logs(specimens=10, slides=2, seed=21)
     return [sliding_part(log) for log in logs], [log.label for log in logs], [log.group for log in logs]
 
 
@@ -49,10 +49,10 @@ def test_a_strong_peak_leaks_over_a_weak_one() -> None:
     assert ours.frequency[-1] / STEP == pytest.approx(16, abs=0.1) and ours.magnitude[-1] == pytest.approx(0.002, rel=0.1)
 
 
-def test_pressing_twice_as_hard_makes_another_material_of_it(parts: tuple[list[Slide], list[str], list[str]], trained: Trained) -> None:
+def test_pressing_harder_makes_another_material_of_it(parts: tuple[list[Slide], list[str], list[str]], trained: Trained) -> None:
     slides, labels, groups = parts
     published = train_texture(slides, labels, groups, features="published").model
-    scene = SlideScene(load_n=2.0)
+    scene = SlideScene(load_n=3.0)
     harder = [sliding_part(slide(MATERIALS[name], seed=k, scene=scene)) for name in MATERIALS for k in range(4)]
     truth = [name for name in MATERIALS for _ in range(4)]
 

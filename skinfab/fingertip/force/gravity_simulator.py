@@ -1,7 +1,8 @@
 """A hand of four fingertips that holds an object in several poses: what its sensors read, as the paper's accuracy test was made.
 
-Contacts carry the object's weight (the least forces that do) and squeeze it; each sensor adds white noise and an offset that
-stays; the hand knows where its fingertips are but for an error that stays. Left out: fingers that give way when the hand is
+Contacts carry the object's weight, with the least forces that do; each sensor adds white noise and an offset of its force that
+stays; the hand knows where its fingertips are but for an error that stays. Left out: the squeeze and the moments' offsets, which
+change no figure (both stay while the hand is turned, as the force's offset does, and are smaller); fingers that give way when the hand is
 turned, contacts that creep, gravity on the fingertips themselves (which turns with the hand, unlike an offset), and people who
 turn the hand while it reads. So the published errors of 3 to 5 mm are reproduced by the offsets that the sensors are said to
 have, which is one way in which they may come about.
@@ -44,14 +45,12 @@ class HandScene:
     samples : int
         A pose.
     rate_hz : float
-    squeeze_n : float
-        Of each finger, towards the ball's centre.
     kinematics_mm : float
         Standard deviation of where the hand believes a fingertip to be, an axis.
     noise : SensorNoise
         Of each finger's sensor.
-    offset_n, offset_nmm : float
-        Standard deviation of its offsets.
+    offset_n : float
+        Standard deviation of its force's offset.
     """
 
     mass_kg: float = 0.170
@@ -60,11 +59,9 @@ class HandScene:
     span_deg: float = 45.0
     samples: int = 100
     rate_hz: float = 200.0
-    squeeze_n: float = 2.0
     kinematics_mm: float = 0.5
     noise: SensorNoise = field(default_factory=SensorNoise)
     offset_n: float = 0.05
-    offset_nmm: float = 0.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,16 +114,14 @@ def hold(
     gravity = directions(scene.poses, scene.span_deg, rng)
     pose = np.repeat(np.arange(scene.poses), scene.samples)
     weight = scene.mass_kg * GRAVITY * gravity
-    # Least contact forces that carry the weight at t, and a squeeze; what the object does to the fingers is what they read.
+    # Least contact forces that carry the weight at t: what the object does to the fingers is what they read.
     grasp = np.block([[np.eye(3) for _ in points], [np.cross(p, np.eye(3), axisb=0, axisc=0) for p in points]])
     carried = (np.linalg.pinv(grasp) @ np.concatenate([weight, np.cross(t, weight)], axis=1).T).T.reshape(scene.poses, len(points), 3)
     wrenches = []
     for k, (finger, point) in enumerate(zip(fingers, points, strict=True)):
-        outward = (point - t) / np.linalg.norm(point - t)
-        f = (carried[:, k] + scene.squeeze_n * outward)[pose]
-        own = f @ finger.rotation
+        own = carried[pose, k] @ finger.rotation
         arm = (point - finger.position) @ finger.rotation
-        read = as_read(own, np.cross(arm, own), rng, noise=scene.noise, offset_n=scene.offset_n, offset_nmm=scene.offset_nmm)
+        read = as_read(own, np.cross(arm, own), rng, noise=scene.noise, offset_n=scene.offset_n)
         wrenches.append(np.concatenate(read, axis=1))
     believed = [Finger(f.rotation, f.position + scene.kinematics_mm * rng.standard_normal(3)) for f in fingers]
     total = hand_wrench(believed, np.stack(wrenches))

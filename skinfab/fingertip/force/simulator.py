@@ -83,10 +83,10 @@ class SlideScene:
         Over which the irregular part of the friction fades.
     spool_mm, spool_ripple : float
         Way a turn of the spool, and the ripple of the friction with it, as a part of its mean.
-    load_scatter, speed_scatter : float
-        Standard deviation from slide to slide, as a part.
-    specimen_scatter, pitch_scatter : float
-        From specimen to specimen of one material: friction, ripple and roughness; and pitch.
+    speed_scatter : float
+        Standard deviation of the speed from slide to slide, as a part.
+    specimen_scatter : float
+        Of friction, ripple and roughness from specimen to specimen of one material, as a part.
     noise : SensorNoise
     offset_n, offset_nmm : float
         Standard deviation of the sensor's offsets.
@@ -100,10 +100,8 @@ class SlideScene:
     roughness_mm: float = 5.0
     spool_mm: float = 44.8
     spool_ripple: float = 0.04
-    load_scatter: float = 0.1
-    speed_scatter: float = 0.02
+    speed_scatter: float = 0.03
     specimen_scatter: float = 0.1
-    pitch_scatter: float = 0.02
     noise: SensorNoise = field(default_factory=SensorNoise)
     offset_n: float = 0.05
     offset_nmm: float = 0.5
@@ -118,7 +116,6 @@ def specimen(material: Material, rng: np.random.Generator, scene: SlideScene) ->
     return replace(
         material,
         friction=material.friction * friction,
-        pitch_mm=material.pitch_mm * (1 + scene.pitch_scatter * rng.standard_normal()),
         ripple=material.ripple * ripple,
         second=material.second * ripple,
         roughness=material.roughness * abs(roughness),
@@ -148,14 +145,13 @@ def slide(material: Material, *, seed: int | np.random.Generator = 0, scene: Sli
     """
     scene = scene or SlideScene()
     rng = np.random.default_rng(seed)
-    load = scene.load_n * (1 + scene.load_scatter * rng.standard_normal())
     speed = scene.speed_mm_s * (1 + scene.speed_scatter * rng.standard_normal())
     n = round((scene.rest_s + _PRESS_S + scene.slide_s) * scene.rate_hz)
     time = np.arange(n) / scene.rate_hz
     sliding = time >= scene.rest_s + _PRESS_S
     way = np.where(sliding, time - scene.rest_s - _PRESS_S, 0.0) * speed
     friction = np.where(sliding, _friction(material, way, rng, scene), 0.0)
-    normal = np.where(time >= scene.rest_s, load, 0.0)
+    normal = np.where(time >= scene.rest_s, scene.load_n, 0.0)
     force = np.column_stack([normal * friction, np.zeros(n), -normal])
     moment = np.cross(np.array([0.0, 0.0, RADIUS_MM]), force)
     force, moment = as_read(force, moment, rng, noise=scene.noise, offset_n=scene.offset_n, offset_nmm=scene.offset_nmm)

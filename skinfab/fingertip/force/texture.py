@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from skinfab.errors import InputError
 from skinfab.fingertip.force.contact import LEAST_FORCE_N, Hemisphere, locate
 from skinfab.fingertip.force.logs import WrenchLog
+from skinfab.fingertip.force.wrench import SensorNoise
 from skinfab.readout.filters import Lowpass
 
 FloatArray = NDArray[np.float64]
@@ -46,6 +47,8 @@ class Slide:
     inclination : (n,) float, rad
         Between force and normal; of the force below 10 Hz, since the paper's extremes are less than the sensor's noise spans.
     rate_hz : float
+    noise_n : float
+        Standard deviation of a force's sample while nothing is touched; 0 where that is not known.
     notes : tuple of str
     """
 
@@ -53,6 +56,7 @@ class Slide:
     normal: FloatArray
     inclination: FloatArray
     rate_hz: float
+    noise_n: float = 0.0
     notes: tuple[str, ...] = ()
 
     @property
@@ -78,7 +82,7 @@ def sliding_part(log: WrenchLog, surface: Hemisphere | None = None) -> Slide:
     rate = log.rate_hz
     if not rate >= 2 * TOP_HZ * 1.25:
         raise InputError(f"{log.name} has {rate:.4g} samples a second; a texture needs {2.5 * TOP_HZ:g} or more")
-    force, moment, notes = _without_offset(log)
+    force, moment, noise_n, notes = _without_offset(log)
     low = Lowpass(TOP_HZ, rate)
     if len(log) < low.shortest + 2 * round(_SMOOTH_S * rate):
         raise InputError(f"{log.name} has {len(log)} samples, {len(log) / rate:.2g} s; slide over the material for seconds")
@@ -100,17 +104,22 @@ def sliding_part(log: WrenchLog, surface: Hemisphere | None = None) -> Slide:
     part = slice(start, end)
     pull = force[part].mean(axis=0)
     pull -= (pull @ normal) * normal
-    return Slide(force[part] @ (pull / np.linalg.norm(pull)), force[part] @ normal, inclination[part], rate, notes)
+    return Slide(force[part] @ (pull / np.linalg.norm(pull)), force[part] @ normal, inclination[part], rate, noise_n, notes)
 
 
-def _without_offset(log: WrenchLog) -> tuple[FloatArray, FloatArray, tuple[str, ...]]:
-    """Forces and moments, less what the sensor read before it was touched: a force that stays within its noise."""
+def _without_offset(log: WrenchLog) -> tuple[FloatArray, FloatArray, float, tuple[str, ...]]:
+    """Forces and moments, less what the sensor read before it was touched; and the noise that it had then."""
     free = max(round(0.2 * log.rate_hz), 4)
     head = log.force[:free]
     size = np.linalg.norm(head.mean(axis=0))
     if len(log) <= free or size > LEAST_FORCE_N or np.ptp(head, axis=0).max() > LEAST_FORCE_N:
-        return log.force, log.moment, (f"{log.name} does not begin without load, so the sensor's offset is not known and not taken off",)
-    return log.force - head.mean(axis=0), log.moment - log.moment[:free].mean(axis=0), ()
+        return (
+            log.force,
+            log.moment,
+            0.0,
+            (f"{log.name} does not begin without load, so the sensor's offset is not known and not taken off",),
+        )
+    return log.force - head.mean(axis=0), log.moment - log.moment[:free].mean(axis=0), float(head.std(axis=0, ddof=1).mean()), ()
 
 
 def _slides(inclination: FloatArray, touching: NDArray[np.bool_], width: int) -> NDArray[np.bool_]:
@@ -211,7 +220,9 @@ PUBLISHED_NAMES = (*(f"peak {k} Hz" for k in (1, 2, 3)), *(f"peak {k} mN" for k 
 
 
 def band_features(slide: Slide, *, n_fft: int = N_FFT) -> FloatArray:
-    """Logarithms of the friction's power in `BANDS_HZ`, and friction's mean and standard deviation below 10 Hz: (18,).
+    """Logarithms of the friction's power in `BANDS_HZ`, and of its mean and standard deviation below 10 Hz: (18,).
+
+    Logarithms, because specimens of a material differ by parts of what they are.
 
     All of the slide counts, in Hann windows of `n_fft` samples that overlap by half, or one of all samples where it is shorter.
     Bands above half of the sampling rate, or too narrow for the window, take the power of the nearest frequency below it.
@@ -226,12 +237,18 @@ def band_features(slide: Slide, *, n_fft: int = N_FFT) -> FloatArray:
     frequency = np.fft.rfftfreq(n, 1 / slide.rate_hz)
     edges = np.searchsorted(frequency, BANDS_HZ)
     bands = [power[min(a, len(power) - 1) : max(b, a + 1)].mean() for a, b in itertools.pairwise(edges)]
-    angle = np.tan(slide.inclination)
-    return np.concatenate([np.log(np.maximum(bands, np.finfo(float).tiny)), [angle.mean(), angle.std()]])
+    # The sensor's noise is a friction that is the less the harder the finger presses: it is taken off, and what is less than a
+    # usual sensor's noise at 1 N counts for nothing.
+    white = 2 * slide.noise_n**2 / slide.rate_hz / float(slide.normal.mean()) ** 2
+    floor = 2 * SensorNoise().force_n ** 2 / slide.rate_hz
+    friction = np.tan(slide.inclination)
+    features = np.array([*(max(each - white, 0.0) + floor for each in bands), friction.mean(), friction.std()])
+    out: FloatArray = np.log(np.maximum(features, np.finfo(float).tiny))
+    return out
 
 
 BAND_NAMES = (
     *(f"log power {a:.3g} to {b:.3g} Hz" for a, b in itertools.pairwise(BANDS_HZ)),
-    "mean friction",
-    "spread of friction",
+    "log mean friction",
+    "log spread of friction",
 )

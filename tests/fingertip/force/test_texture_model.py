@@ -18,7 +18,7 @@ Data = tuple[list[Slide], list[str], list[str]]
 
 @pytest.fixture(scope="module")
 def data() -> Data:
-    logs = texture_logs(specimens=4, slides=4, seed=11)
+    logs = texture_logs(specimens=12, slides=2, seed=11)
     return [sliding_part(log) for log in logs], [log.label for log in logs], [log.group for log in logs]
 
 
@@ -35,16 +35,16 @@ def test_bands_tell_more_than_the_published_features(data: Data, trained: Traine
     published = train_texture(*data, features="published")
     assert trained.accuracy.value > 0.85 > 1 / 6 and trained.accuracy.value > published.accuracy.value
     assert trained.accuracy.low < trained.accuracy.value < trained.accuracy.high
-    assert trained.confusion.counts.sum() == 96 and trained.groups == 24
+    assert trained.confusion.counts.sum() == 144 and trained.groups == 72
 
 
 def test_nothing_is_learned_where_labels_are_drawn_by_lot(data: Data) -> None:
     slides, labels, groups = data
     lots = np.random.default_rng(0).permutation(sorted(set(groups)))
-    name_of = dict(zip(lots.tolist(), [name for name in sorted(set(labels)) for _ in range(4)], strict=True))
+    name_of = dict(zip(lots.tolist(), [name for name in sorted(set(labels)) for _ in range(12)], strict=True))
     drawn = train_texture(slides, [name_of[group] for group in groups], groups)
-    # Slides of one specimen know each other: a random split finds names that mean nothing, whole groups do not.
-    assert drawn.accuracy.high < 0.3 and drawn.ungrouped > 2 * drawn.accuracy.value
+    # One of six by chance: no specimen is on both sides.
+    assert drawn.accuracy.low < 1 / 6 and drawn.accuracy.high < 0.3
 
 
 def test_a_saved_model_decides_as_before(trained: Trained, data: Data, tmp_path: Path) -> None:
@@ -76,7 +76,7 @@ def test_too_little_to_learn_from(data: Data) -> None:
     with pytest.raises(InputError, match="one specimen"):
         train_texture(slides, labels, labels)
     with pytest.raises(InputError, match="two materials"):
-        train_texture(slides[:16], labels[:16], groups[:16])
+        train_texture(slides[:24], labels[:24], groups[:24])
     with pytest.raises(InputError, match="record all at one rate"):
         train_texture([replace(slides[0], rate_hz=100.0), *slides[1:]], labels, groups)
 
