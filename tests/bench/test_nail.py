@@ -28,7 +28,7 @@ def ran(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, Any],
         patch.setattr(nail_ablation, "TERMS", {term: TERMS[term] for term in (NOTHING, "scatter of the turn")})
         for module in (nail, nail_ablation):  # one of the three, as the others take the same way at ten times the cost
             patch.setattr(module, "TESTS", {TEST: EDGES4})
-        found = run(folder, protocol=SMALL, progress=lambda fraction, label: seen.append(fraction))
+        found = run(folder, repeats=1, protocol=SMALL, progress=lambda fraction, label: seen.append(fraction))
     return folder, found, seen
 
 
