@@ -8,7 +8,7 @@ import io
 import json
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -148,6 +148,8 @@ def _require_usage(args: argparse.Namespace) -> None:
 
 def _logged(args: argparse.Namespace, surface: Hemisphere | TipMesh, least: float) -> tuple[list[WrenchLog], list[list[Motion]]]:
     """Logs without the sensor's offset, and the events of each."""
+    import numpy as np
+
     from skinfab.errors import InputError
     from skinfab.fingertip.force.logs import read_wrench
     from skinfab.fingertip.force.motion import Limits, MotionWatch, find_motions
@@ -166,6 +168,9 @@ def _logged(args: argparse.Namespace, surface: Hemisphere | TipMesh, least: floa
                 raise InputError(f"{path} has a single row; that is no log of a motion")
             log = tared(log, seconds=args.tare) if args.tare else log
             watch = MotionWatch(Limits(args.friction), rate_hz=log.rate_hz, surface=surface, least_force=least)
+            if late := int((np.diff(log.time) <= 0).sum()):
+                said = f"{log.name}: the time does not go on at {late} samples; motions were looked for in those that come in order"
+                log = replace(log, notes=(*log.notes, said))
             logs.append(log)
             events.append(find_motions(log.time, log.force, log.moment, watch))
         progress(1.0, "done")
@@ -176,8 +181,6 @@ def _watched(
     args: argparse.Namespace, surface: Hemisphere | TipMesh, least: float
 ) -> tuple[list[WrenchLog], list[list[Motion]], dict[str, float]]:
     """What a port sent, its events, and how long decisions took."""
-    from dataclasses import replace
-
     from skinfab.cli.force_port import watch_port
     from skinfab.fingertip.force.motion import Limits
 

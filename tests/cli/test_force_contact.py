@@ -90,6 +90,13 @@ def test_a_truth_without_the_log_is_refused(grasps: Path, tmp_path: Path, capsys
     assert "row 1" in capsys.readouterr().err
 
 
+def test_a_time_that_runs_backwards_is_told(grasps: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    lines = (grasps / "grasp-40.csv").read_text().splitlines()
+    (tmp_path / "back.csv").write_text("\n".join([*lines[:3000], *lines[3400:2999:-1], *lines[3401:]]) + "\n")
+    result = said(capsys, "run", "contact", tmp_path / "back.csv", "-o", tmp_path / "out")
+    assert any("does not go on at 400 samples" in note for note in result["notes"])
+
+
 def test_a_log_is_not_replaced(grasps: Path, tmp_path: Path) -> None:
     (tmp_path / "contacts.csv").write_text((grasps / "grasp-40.csv").read_text())
     before = (tmp_path / "contacts.csv").read_bytes()
