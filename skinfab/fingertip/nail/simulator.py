@@ -21,6 +21,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from skinfab.errors import InputError
 from skinfab.fingertip.nail.finger import EDGE_POINTS, ComplexArray, Finger, contact_matrix, motor_force, respond
+from skinfab.fingertip.nail.labels import CHANNELS
 from skinfab.fingertip.nail.patterns import Pattern
 from skinfab.readout.frame import Channel, Frame, Recording, Stream
 from skinfab.readout.paced import PacedFrames
@@ -30,7 +31,6 @@ FloatArray = NDArray[np.float64]
 #: The paper's: about 1.4 kHz, and 1024 readings an estimate.
 RATE_HZ = 1400.0
 WINDOW = 1024
-CHANNELS = ("Ax", "Ay", "Az", "Gx", "Gy", "Gz")
 #: The paper's 100 g.
 FORCE_N = 0.98
 
