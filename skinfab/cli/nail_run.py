@@ -75,6 +75,7 @@ def run(args: argparse.Namespace) -> int:
 
 def _from_log(args: argparse.Namespace, content: Any) -> tuple[list[Told], dict[str, Any]]:
     from skinfab.fingertip.nail.live import decide_log
+    from skinfab.readout.checks import check_times
     from skinfab.readout.logs.log import read_log
 
     log = read_log(args.log)
@@ -87,7 +88,7 @@ def _from_log(args: argparse.Namespace, content: Any) -> tuple[list[Told], dict[
         "frames": len(log.recording),
         "lost": lost,
         "window_readings": samples,
-        "notes": list(log.notes),
+        "notes": [*log.notes, *(f"{log.file}: {wrong}" for wrong in check_times(log.recording))],
     }
     if args.labels:
         facts |= _judged(args.labels, log.file, told, samples, content.model.rate_hz)

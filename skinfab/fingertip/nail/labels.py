@@ -169,7 +169,7 @@ def read_trials(path: str | Path) -> tuple[list[Trial], bool, list[str]]:
     """
     path = Path(path)
     labels, simulated = read_labels(path)
-    logs: dict[str, tuple[Recording, FloatArray, NDArray[np.bool_], float]] = {}
+    logs: dict[str, tuple[FloatArray, FloatArray, NDArray[np.bool_], float]] = {}
     trials, notes = [], []
     for each in labels:
         if each.log not in logs:
@@ -177,9 +177,10 @@ def read_trials(path: str | Path) -> tuple[list[Trial], bool, list[str]]:
             notes += [f"{log.file}: {note}" if log.file not in note else note for note in log.notes]
             simulated |= log.recording.stream.simulated
             values, bad = six_channels(log.recording)
-            logs[each.log] = (log.recording, values, bad, rate_of(log.recording))
-        recording, values, bad, rate = logs[each.log]
-        time = recording.device_time - recording.device_time[0]
+            timed = np.isfinite(log.recording.device_time)
+            rate, time = rate_of(log.recording), log.recording.device_time[timed]
+            logs[each.log] = (time - time[0], values[timed], bad[timed], rate)
+        time, values, bad, rate = logs[each.log]
         first, last = np.searchsorted(time, [each.start_s - 0.5 / rate, each.end_s - 0.5 / rate])
         if last - first < 2 or time[-1] < each.end_s - 1.5 / rate:
             raise InputError(

@@ -194,7 +194,7 @@ def decide_log(
     values, saturated = six_channels(recording)
     if not isinstance(model, HistogramModel):
         values = np.where(saturated, np.nan, values)
-    time = recording.device_time - recording.device_time[0]
+    time = recording.device_time - recording.device_time[np.isfinite(recording.device_time)][0]
     rows = zip(values, recording.sequence.tolist(), time.tolist(), strict=True)
     told = [made for row, sequence, at in rows if (made := watch.take(row, sequence, at)) is not None]
     return told, watch.lost

@@ -1,10 +1,13 @@
 """Labels: what is written is read, trials are cut out where they are, and what does not fit is said."""
 
+import contextlib
 import math
 from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from skinfab.errors import InputError
 from skinfab.fingertip.nail.labels import Label, rate_of, read_labels, read_trials, write_labels
@@ -81,6 +84,25 @@ def test_a_log_of_other_channels(table: Path) -> None:
     table.write_text("log,start_s,end_s,label\nb.csv,0,1,x\n")
     with pytest.raises(InputError, match="none of the channels Ax, Ay"):
         read_trials(table)
+
+
+@settings(deadline=None, max_examples=60)
+@given(st.lists(st.lists(st.sampled_from(["a.csv", "0", "1", "-1", "nan", "inf", "x", "", '"', "1e400", "#"]), max_size=6), max_size=5))
+def test_any_table_is_read_or_refused(tmp_path_factory: pytest.TempPathFactory, rows: list[list[str]]) -> None:
+    path = tmp_path_factory.mktemp("l") / "l.csv"
+    path.write_text("\n".join(["log,start_s,end_s,label,x_mm", *(",".join(row) for row in rows)]))
+    labels: list[Label] = []
+    with contextlib.suppress(InputError):
+        labels, _ = read_labels(path)
+    assert all(0 <= each.start_s < each.end_s < math.inf and each.log and each.label for each in labels)
+
+
+def test_frames_without_a_time_are_none(table: Path) -> None:
+    time = 5 + np.arange(300) / 1400
+    time[[0, 7]] = np.nan
+    write_log(Recording.of_values(STREAM, np.ones((300, 3)), device_time=time, host_time=np.zeros(300)), table.parent / "a.csv")
+    trials, _, _ = read_trials(table)
+    assert [len(each.values) for each in trials] == [99, 100]
 
 
 def test_a_rate_from_times() -> None:
