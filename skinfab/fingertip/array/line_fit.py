@@ -1,8 +1,9 @@
 """A rod on the finger, found by the skin's own answer to a line of pressure: place, direction, length and force that fit best.
 
 The pressure falls as a parabola to zero at the ends of the line. Its length is found with the rest, as no law of contact is known well
-enough; but it is no shorter than half of what the found force gives across the finger, because a line that is nearly a
-point may lie any way. A direction is not sure where its standard deviation is large, or where another one explains the frame as well.
+enough; but it is no shorter than the width that the seed's equation 11 gives for the found force, because a line that is nearly a
+point may lie any way. A direction is not sure where its standard deviation is large, or where another one, or a point,
+explains the frame as well.
 """
 
 from __future__ import annotations
@@ -16,20 +17,20 @@ from numpy.typing import NDArray
 
 from skinfab.fingertip.array.interpolate import SINC
 from skinfab.fingertip.array.least_squares import normal_equations, solve
-from skinfab.fingertip.array.matched import ArrayModel, skin_of
+from skinfab.fingertip.array.matched import ArrayModel, fit_forces, skin_of
 from skinfab.fingertip.array.orientation import Orientation, folded
 from skinfab.fingertip.array.peak import find, highest, without_nan
 from skinfab.fingertip.array.response import add_force, normal_window
-from skinfab.fingertip.array.simulator import LONGEST_MM, contact_line, line_nodes
-from skinfab.tolerances import LINE_RIVAL, LINE_STEP_RAD, LINE_UNSURE_RAD, NEWTON_TACTELS, PEAK_FLAT
+from skinfab.fingertip.array.simulator import LONGEST_MM, STRETCH, contact_line, line_nodes
+from skinfab.tolerances import LINE_RIVAL, LINE_STEP_RAD, LINE_UNSURE_RAD, MATCH_MM, NEWTON_TACTELS, PEAK_FLAT
 
 FloatArray = NDArray[np.float64]
 
 #: Points that stand for the line, directions and lengths that are tried first (mm).
 _NODES, _DIRECTIONS, _LENGTHS = 7, 8, (6.0, 12.0)
 _FIRST_STEPS, _SECTORS, _STEPS = 3, 8, 25
-#: Before the force is known no contact is shorter, mm; and then than this part of what it gives across the finger.
-_SHORTEST_MM, _SHORTEST = 4.0, 0.5
+#: Before the force is known no contact is shorter, mm.
+_SHORTEST_MM = 4.0
 #: Tactels so far around are compared, mm, and two to either side at least.
 _AROUND_MM, _AROUND = 10.0, 2
 
@@ -49,7 +50,7 @@ class Line:
         Standard deviation of the direction, from what is left unexplained.
     unexplained : float
     ambiguous : bool
-        Another direction explains the frame as well.
+        Another direction, or no length at all, explains the frame as well.
     """
 
     axial_mm: float
@@ -238,8 +239,18 @@ class LineFinder:
             float(p[4]) * m.rubber.young,
             math.sqrt(max(variance, 0.0) * (max(cost, floor) / cost if cost > 0 else 1.0)),
             cost / max(float((known * known).sum()), 1e-300),
-            ambiguous,
+            ambiguous or self._like_a_point(Z, p, max(cost / max(used - 5, 1), self._noise**2)),
         )
+
+    def _like_a_point(self, Z: FloatArray, p: FloatArray, variance: float) -> bool:
+        """Whether one force leaves no more of the frame than the line does, but for noise."""
+        m = self.model
+        at, *_ = fit_forces(Z, m.gains, np.array([[p[0], p[1], p[4]]]), self._skin, MATCH_MM)
+        core, young = m.geometry.core_radius, m.rubber.young
+        point = Line(at[0, 0], at[0, 1] / core, 0.0, 0.0, at[0, 2] * young, 0.0, 0.0, True)
+        line = Line(p[0], p[1] / core, p[2], 2 * p[3], p[4] * young, 0.0, 0.0, False)
+        of_point, of_line = (float(np.nansum((Z - self.predicted(each)) ** 2)) for each in (point, line))
+        return of_point - of_line < LINE_RIVAL * variance
 
     def predicted(self, line: Line) -> FloatArray:
         """The deflections of a line by the model, (rings, stripes)."""
@@ -263,7 +274,7 @@ class LineFinder:
                 start = np.array([x, s, math.pi * k / _DIRECTIONS, length / 2, height])
                 begun.append(fit_line(Z, m.gains, start, *fixed, (_SHORTEST_MM / 2, LONGEST_MM / 2), LINE_STEP_RAD, _FIRST_STEPS))
         force = max(min(begun, key=lambda each: each[1])[0][4] * m.rubber.young, 0.0)
-        shortest = min(_SHORTEST * contact_line(force, 0.0, g.finger_radius), LONGEST_MM / 2)
+        shortest = min(contact_line(force, 0.0, g.finger_radius) / STRETCH, LONGEST_MM / 2)
         ends = []
         per_sector = len(begun) // _SECTORS
         for k in range(_SECTORS):
