@@ -33,10 +33,8 @@ HAND_TERMS = {
     "object not tilted": {"tilt_deg": 0.0},
     "fingers at right angles": {"azimuth_deg": 0.0},
     "fingers at one height": {"along_mm": 0.0},
-    "fingers' axes straight": {"lean_deg": 0.0},
     "joints' places exact": {"joint_mm": 0.0},
     "joints' turns exact": {"joint_deg": 0.0},
-    "no sensor noise": {"noise": SensorNoise(0.0, 0.0)},
 }
 
 

@@ -12,7 +12,6 @@ from skinfab.fingertip.force.motion_simulator import grasp_log
 from skinfab.fingertip.force.reconstruct import published, reconstruct
 from skinfab.fingertip.force.shape import ShapeModel, decide, features_of, fit_shapes
 from skinfab.fingertip.force.tare import tared
-from skinfab.fingertip.force.wrench import SensorNoise
 from skinfab.mesh.model import Mesh
 
 RNG = np.random.default_rng(0)
@@ -155,7 +154,7 @@ def test_a_hand_that_has_moved_over_the_table_changes_raw_features_alone(models:
 
 
 def test_a_square_post_grasped_on_its_middles_is_a_cylinder_too(models: dict[str, ShapeModel]) -> None:
-    exact = HandScene(joint_mm=0, joint_deg=0, yaw_deg=0.01, tilt_deg=0.01, azimuth_deg=0.01, along_mm=5, noise=SensorNoise(0, 0))
+    exact = HandScene(joint_mm=0, joint_deg=0, yaw_deg=0.01, tilt_deg=0.01, azimuth_deg=0.01, along_mm=5)
     found = touches(simulate_grasp(Solid(CUBOID, (60.0, 60.0, 90.0)), seed=1, scene=exact))
     fits = dict(zip(SHAPES, np.exp(features_of([found], "misfits")[0]), strict=True))
     assert fits["cuboid"] < 0.05 and fits["cylinder"] < 0.05 < fits["sphere"]  # no method can tell these four contacts
@@ -186,7 +185,7 @@ def test_a_side_that_nobody_touched_is_made_up_by_the_published_way() -> None:
 
 
 def test_a_centre_that_is_off_ruins_single_sides_and_spares_those_felt_from_both() -> None:
-    grasp = simulate_grasp(PAPER[2], seed=2, scene=HandScene(joint_mm=0, joint_deg=0, noise=SensorNoise(0, 0)), fingers=OVER)
+    grasp = simulate_grasp(PAPER[2], seed=2, scene=HandScene(joint_mm=0, joint_deg=0), fingers=OVER)
     off = reconstruct(touches(grasp), CUBOID, grasp.centre + 6.0)
-    error = np.sort(np.abs(np.sort(off.size) - PAPER[2].size))
-    assert error[0] < 0.01 and error[-1] > 5
+    apart = np.abs(np.subtract.outer(off.size, PAPER[2].size)).min(axis=1)  # each side from the true one nearest to it
+    assert apart.min() < 0.01 and np.abs(np.sort(off.size) - PAPER[2].size).max() > 5

@@ -1,8 +1,9 @@
 """A four-fingered hand grasps a solid: what each fingertip's sensor reads, and where its joints say it is. Simulated.
 
 The object is held still: the fingers' forces are their squeeze and, added to it, the least that balances gravity. Errors are
-the sensor's noise and the joints': each fingertip is a little elsewhere and turned a little from where the hand thinks.
-Left out: the fingers' kinematics (a fingertip is where it touches), give of finger and object, a contact's area, slip.
+the joints': each fingertip is a little elsewhere and turned a little from where the hand thinks. Left out: the fingers'
+kinematics (a fingertip is where it touches), give of finger and object, a contact's area, slip. The sensor's noise and fingers
+whose axes do not point at the object were in and changed no figure: at 2 to 4 N noise is 0.05 mm where joints are off by 1.5.
 """
 
 from __future__ import annotations
@@ -17,8 +18,7 @@ from scipy.spatial.transform import Rotation
 
 from skinfab.errors import InputError
 from skinfab.fingertip.force.contact import locate
-from skinfab.fingertip.force.simulator import as_read
-from skinfab.fingertip.force.wrench import RADIUS_MM, SensorNoise
+from skinfab.fingertip.force.wrench import RADIUS_MM
 
 FloatArray = NDArray[np.float64]
 
@@ -92,8 +92,6 @@ class HandScene:
         The object's turn about the vertical, and from it, at most.
     azimuth_deg, along_mm : float
         Scatter of where the fingers come from, and how high they touch.
-    lean_deg : float, deg
-        Scatter of the fingers' axes.
     joint_mm, joint_deg : float
         Scatter of a fingertip's place (each axis) and of its turn (about each axis) that the joints do not tell.
     squeeze_n : pair, N
@@ -104,11 +102,8 @@ class HandScene:
         A grasp in which a contact needs more than this would slip: another one is tried ...
     tries : int
         ... so often; then it is held all the same.
-    samples : int
-        Averaged a pose.
     pose_deg : float, deg
         The hand's turn from pose to pose, about any axis, at most.
-    noise : SensorNoise
     """
 
     height_mm: float = 140.0
@@ -117,7 +112,6 @@ class HandScene:
     tilt_deg: float = 15.0
     azimuth_deg: float = 11.0
     along_mm: float = 12.0
-    lean_deg: float = 10.0
     joint_mm: float = 1.5
     joint_deg: float = 4.0
     squeeze_n: tuple[float, float] = (2.0, 4.0)
@@ -125,9 +119,7 @@ class HandScene:
     mass_kg: float = 0.17
     friction_deg: float = 40.0
     tries: int = 50
-    samples: int = 20
     pose_deg: float = 45.0
-    noise: SensorNoise = field(default_factory=SensorNoise)
 
 
 @dataclass(frozen=True, eq=False)
@@ -241,10 +233,8 @@ def simulate_grasp(
     told = Rotation.from_rotvec(math.radians(scene.joint_deg) * rng.standard_normal((FINGERS, 3))) * frames
     inside = np.array([frames.inv().apply(each) for each in force])
     arm = frames.inv().apply(point - position)
-    sensed = as_read(inside.reshape(-1, 3), np.cross(arm, inside).reshape(-1, 3), rng, noise=scene.noise.averaged(scene.samples))
-    f, m = (each.reshape(poses, FINGERS, 3) for each in sensed)
     seen = position + scene.joint_mm * rng.standard_normal((FINGERS, 3))
-    return Grasp(seen, told.as_rotvec(), f, m, solid, number, place, simulated=True)
+    return Grasp(seen, told.as_rotvec(), inside, np.cross(arm, inside), solid, number, place, simulated=True)
 
 
 def _contacts(
@@ -257,7 +247,7 @@ def _contacts(
     turned = Rotation.from_rotvec(tilt * np.array([math.cos(about), math.sin(about), 0])) * Rotation.from_rotvec([0, 0, yaw])
     where = [_direction(each, rng, scene) for each in fingers]
     own = [_surface(solid, turned.inv().apply(way), along) for way, along in where]
-    axes = np.array([-way for way, _ in where]) + math.tan(math.radians(scene.lean_deg)) * rng.standard_normal((FINGERS, 3))
+    axes = np.array([-way for way, _ in where])
     return place, place + turned.apply([p for p, _ in own]), turned.apply([n for _, n in own]), axes
 
 

@@ -6,9 +6,8 @@ from scipy.spatial.transform import Rotation
 
 from skinfab.fingertip.force.fits import FITS, fit_cuboid, fit_cylinder, fit_sphere
 from skinfab.fingertip.force.grasp import LEARNED, NEW, SHAPES, HandScene, simulate_grasp, touches
-from skinfab.fingertip.force.wrench import SensorNoise
 
-EXACT = HandScene(joint_mm=0, joint_deg=0, noise=SensorNoise(0, 0))
+EXACT = HandScene(joint_mm=0, joint_deg=0)
 
 
 @pytest.mark.parametrize("solid", [*LEARNED, *NEW], ids=lambda solid: solid.name)

