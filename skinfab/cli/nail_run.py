@@ -16,6 +16,10 @@ from skinfab.cli.record import baud
 if TYPE_CHECKING:
     from skinfab.fingertip.nail.live import Told
 
+#: Readings from one decision to the next: 5.7 ms, a turn of the motor.
+_EVERY = 8
+#: Decisions that come so much later than their readings, s, in the median, are ever more behind.
+_BEHIND_S = 0.2
 FILES = ("decisions.csv", "nail.png", "result.json")
 
 
@@ -27,7 +31,9 @@ def add_options(p: argparse.ArgumentParser) -> None:
     p.add_argument(
         "--window", metavar="N", type=steps.counting, default=33, help="readings a decision is made on, from 8 up (default: 33, 24 ms)"
     )
-    p.add_argument("--every", metavar="N", type=steps.counting, default=8, help="a decision after so many readings (default: 8)")
+    p.add_argument(
+        "--every", metavar="N", type=steps.counting, help="a decision after so many readings (default: 8; published: its window)"
+    )
     p.add_argument("--seconds", metavar="S", type=steps.positive, help="of a port: end after so long (default: at Ctrl-C)")
     p.add_argument("--baud", metavar="N", type=baud, help="of a port (default: 921600)")
     p.add_argument("--labels", metavar="LABELS.csv", type=Path, help="of a log: what was touched when, to count how much is right")
@@ -48,6 +54,8 @@ def run(args: argparse.Namespace) -> int:
             args.wrong_usage(f"--{name} is for a {other}")
     require_apart(args.output, FILES, [path for path in (args.model, args.log, args.labels) if path is not None])
     content = load_nail(args.model)
+    if args.every is None:
+        args.every = getattr(content.model, "samples", _EVERY)
     names = list(content.model.names)
     if args.port:
         told, facts = _from_port(args, content)
@@ -149,6 +157,10 @@ def _facts(args: argparse.Namespace, content: Any, told: Sequence[Told], facts: 
     if (strange := sum(each.strange for each in decisions) / len(decisions)) > 0.2:
         notes.append(
             f"{strange:.0%} of the windows are like nothing the model learned from; is it the same finger, and the sensor where it was?"
+        )
+    if (latency := facts.get("latency_ms")) and latency["median"] > 1000 * _BEHIND_S:
+        notes.append(
+            f"decisions were {latency['median'] / 1000:.1f} s behind in the median: too many for this machine; give a larger --every"
         )
     if facts["lost"]:
         notes.append(f"{facts['lost']} frames were lost on the way")

@@ -3,6 +3,7 @@
 import csv
 import itertools
 import json
+import time
 from pathlib import Path
 
 import numpy as np
@@ -101,6 +102,21 @@ def test_run_on_a_port(model: Path, tmp_path: Path, capsys: pytest.CaptureFixtur
     assert found["simulated"] and found["frames"] + found["lost"] <= 1680 and found["frames"] > 1400
     assert 0 < latency["median"] <= latency["p99"] <= latency["worst"] and sum(latency["histogram"]["counts"]) == found["windows"]
     assert found["touched"]["none"] > 0.2 * found["windows"]
+
+
+def test_a_machine_that_cannot_keep_up_is_told(model: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    from skinfab.fingertip.nail import live
+
+    class Slow(live.NailWatch):
+        def step(self, frame):  # type: ignore[no-untyped-def]
+            time.sleep(0.002)  # where one frame comes every 0.7 ms
+            return super().step(frame)
+
+    frames = list(itertools.islice(nail_frames(participant(np.random.default_rng(0)), [None], hold_s=0.4), 1680))
+    with pytest.MonkeyPatch.context() as patched, PtyServer(nail_stream(), frames) as device:
+        patched.setattr(live, "NailWatch", Slow)
+        assert main(["nail", "run", str(model), "--port", str(device.path), "--seconds", "2", "-o", str(tmp_path / "o"), "--json"]) == 0
+    assert any("behind in the median" in note and "--every" in note for note in json.loads(capsys.readouterr().out)["notes"])
 
 
 @pytest.mark.parametrize(
