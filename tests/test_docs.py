@@ -9,7 +9,18 @@ import pytest
 ROOT = Path(__file__).parents[1]
 PAGES = [
     ROOT / "docs" / name
-    for name in ("cuts.md", "flattening.md", "calibration.md", "control.md", "contact.md", "logs.md", "readout.md", "nail.md", "force.md")
+    for name in (
+        "cuts.md",
+        "flattening.md",
+        "calibration.md",
+        "control.md",
+        "contact.md",
+        "logs.md",
+        "readout.md",
+        "nail.md",
+        "array.md",
+        "force.md",
+    )
 ]  # patterns.md has its own test
 
 
