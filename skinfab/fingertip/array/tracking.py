@@ -20,7 +20,8 @@ FloatArray = NDArray[np.float64]
 KINDS = ("touch", "lift", "slip", "roll")
 #: A force that begins a contact, N, and the part of it that ends it.
 TOUCH_N, LIFT_PART = 0.1, 0.5
-#: A contact slips where it moves by so much, mm, in so short a time, s: 20 mm/s, and the seed's bar rolls through 90 degrees in ten frames (12 mm/s).
+#: A contact slips where it moves by so much, mm, in so short a time, s: 20 mm/s, where a bar that rolls through 90 degrees in ten of the
+#: seed's frames goes at 12.
 SLIP_MM, SLIP_S = 4.0, 0.2
 #: It rolls where it moves on by so much, mm; and stands where it does not for so long, s.
 ROLL_MM, STAND_S = 2.0, 0.7
