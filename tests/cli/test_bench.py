@@ -1,19 +1,19 @@
+import importlib
+import inspect
 import json
 import signal
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
 import pytest
 
-from calibration.bench import calibrate
-from skinfab.bench import array, gravity, nail, nail_ablation, readout, texture
-from skinfab.cli.bench import NAMES
+from skinfab.bench import readout
+from skinfab.cli.bench import MODULES, NAMES
 from skinfab.cli.main import main
-from skinfab.fingertip.nail.patterns import EDGES4
-from skinfab.fingertip.nail.protocol import Protocol
 
 SMALL = ["--sizes", "300", "--repeats", "1"]
 
@@ -26,32 +26,36 @@ def test_json_is_all_there_is_on_standard_output(tmp_path: Path, capsys: pytest.
     assert {row["triangles"] for row in shown["flatten"]["rows"]} == {294}
 
 
-@pytest.fixture
-def fewer(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Less of what --sizes does not make less; each measurement as a whole has its own test beside it."""
-    monkeypatch.setattr("gcode.bench.TOLERANCES", (0.05, 0.005))
-    monkeypatch.setattr("calibration.bench.control.GAINS", (1.0, 4.0))
-    monkeypatch.setattr("calibration.bench.control.DELAYS_S", (0.05,))
-    monkeypatch.setattr("calibration.bench.control.PERIODS_S", (8.0,))
-    monkeypatch.setattr(calibrate, "measure", partial(calibrate.measure, seeds=(7,)))
+def test_the_sentence_is_printed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     monkeypatch.setattr(readout, "measure", partial(readout.measure, frames=300))
-    monkeypatch.setattr(array, "measure", partial(array.measure, densities=("8x8",), devices=1, rods=1))
-    monkeypatch.setattr(array, "track", partial(array.track, logs=1))
-    monkeypatch.setattr(array, "ablation", partial(array.ablation, devices=1, rods=1))
-    monkeypatch.setattr(texture, "measure", partial(texture.measure, seeds=(0,), specimens=3, slides=2, lengths=(256, 512)))
-    monkeypatch.setattr(gravity, "measure", partial(gravity.measure, trials=3))
-    monkeypatch.setattr(nail_ablation, "TERMS", {nail_ablation.NOTHING: nail_ablation.TERMS[nail_ablation.NOTHING]})
-    for module in (nail, nail_ablation):
-        monkeypatch.setattr(module, "TESTS", {"edges4": EDGES4})
-    monkeypatch.setattr(nail, "run", partial(nail.run, protocol=Protocol(participants=3, training=3, rounds=2, estimates=1, samples=128)))
-
-
-@pytest.mark.usefixtures("fewer")
-def test_the_sentence_is_printed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["bench", "-o", str(tmp_path), *SMALL]) == 0
+    assert main(["bench", "flatten", "readout", "-o", str(tmp_path), *SMALL]) == 0
     out = capsys.readouterr().out.splitlines()
-    assert out[:-1] == [(tmp_path / f"{name}.txt").read_text().splitlines()[0] for name in NAMES]
-    assert out[-1].startswith("wrote ") and all(str(tmp_path / f"{name}.png") in out[-1] for name in (*NAMES, "refine"))
+    assert out[:-1] == [(tmp_path / f"{name}.txt").read_text().splitlines()[0] for name in ("flatten", "readout")]
+    assert out[-1].startswith("wrote ") and all(str(tmp_path / f"{name}.png") in out[-1] for name in ("flatten", "readout"))
+
+
+@pytest.mark.parametrize("options", [[], SMALL], ids=["as they are", "small"])
+def test_all_are_measured_where_none_is_named(
+    options: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """What each of them measures, its own test beside it says; here, that each is there, is asked, and for no size that it has not."""
+    asked = {}
+
+    def stand_in(name: str, real: Callable) -> Callable:
+        def run(folder: Path, **given: object) -> dict:
+            inspect.signature(real).bind(folder, **given)
+            asked[name] = given.get("sizes")
+            (folder / f"{name}.txt").write_text("measured")
+            return {"sentence": f"{name} is measured", "notes": []}
+
+        return run
+
+    for name, (module, _) in MODULES.items():
+        monkeypatch.setattr(f"{module}.run", stand_in(name, importlib.import_module(module).run))
+    assert main(["bench", "-o", str(tmp_path), *options]) == 0
+    assert capsys.readouterr().out.splitlines()[:-1] == [f"{name} is measured" for name in NAMES]
+    assert asked == {name: [300] if options and sized else None for name, (_, sized) in MODULES.items()}
+    assert list(MODULES) == list(NAMES) and len(list(tmp_path.iterdir())) == len(NAMES)
 
 
 @pytest.mark.parametrize(

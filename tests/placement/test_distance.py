@@ -26,7 +26,7 @@ segments = st.one_of(
 )
 
 
-@settings(max_examples=600, deadline=None)
+@settings(max_examples=200, deadline=None)
 @given(segments, segments)
 def test_two_segments_against_sampling(one: Line | Arc, two: Line | Arc) -> None:
     exact = distance(Curves.of_segments([one]), Curves.of_segments([two]))
@@ -38,7 +38,7 @@ def test_two_segments_against_sampling(one: Line | Arc, two: Line | Arc) -> None
     assert exact >= sampled - (one.length + two.length) / (2 * (count - 1)) - 1e-9
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=40, deadline=None)
 @given(st.lists(segments, min_size=1, max_size=12), st.lists(segments, min_size=1, max_size=12))
 def test_many_segments_are_the_least_of_all_pairs(ones: list, twos: list) -> None:
     whole = distance(Curves.of_segments(ones), Curves.of_segments(twos))
@@ -89,7 +89,7 @@ def test_self_distance_sees_a_turn_that_is_too_tight() -> None:
     assert self_distance(tight.path(), apart=math.pi / 2 * need) == pytest.approx(0.9)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=30, deadline=None)
 @given(st.lists(st.tuples(st.floats(1, 8), st.floats(-3, 3)), min_size=2, max_size=7), st.floats(0.5, 4))
 def test_self_distance_against_sampling(moves: list[tuple[float, float]], apart: float) -> None:
     at, heading, parts = np.zeros(2), 0.0, []

@@ -20,6 +20,7 @@ from skinfab.placement.wrap_strain import WornSkin, WrapStrain, worn_skin, wrap_
 NEUTRAL, CONDUCTOR, THICK = 1.25, 1.6, 2.5
 BEYOND = CONDUCTOR - NEUTRAL
 QUARTER = np.pi / 2
+LARGE = 50_000
 Worn = tuple[Mesh, Mesh, Piece]
 
 
@@ -183,7 +184,8 @@ def test_two_meshings_of_an_object_bend_alike(name: str) -> None:
     flat = offset_mesh(body, NEUTRAL, round_off=True).mesh
     rng = np.random.default_rng(1)
     topology, measured = flat.topology, 0
-    for edge in rng.permutation(np.flatnonzero(topology.edge_count == 2))[:6]:
+    edges = 6 if len(body.F) < LARGE else 2  # of its 85 thousand triangles each is as flat as the next
+    for edge in rng.permutation(np.flatnonzero(topology.edge_count == 2))[:edges]:
         a, b = flat.V[topology.E[edge]]
         up = flat.face_normals[topology.EF[edge]].sum(axis=0)
         up /= np.linalg.norm(up)
@@ -205,4 +207,4 @@ def test_two_meshings_of_an_object_bend_alike(name: str) -> None:
         assert got[1].bending.mean * path.length == pytest.approx(got[0].bending.mean * path.length, abs=BEYOND * np.radians(10))
         assert got[1].bending.max == pytest.approx(got[0].bending.max, abs=0.01)
         measured += 1
-    assert measured == 6
+    assert measured == edges

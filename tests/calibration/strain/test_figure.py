@@ -26,5 +26,6 @@ def test_it_is_written_and_is_the_same_again(suffix: str, begins: bytes, log: Ca
         assert one == two
         from matplotlib.image import imread
 
-        colours = {tuple(np.rint(255 * pixel).astype(int)[:3]) for pixel in imread(tmp_path / "one.png").reshape(-1, 4)}
-        assert {(0, 114, 178), (230, 159, 0)} <= colours  # both branches are drawn
+        colours = np.rint(255 * imread(tmp_path / "one.png").reshape(-1, 4)[:, :3])
+        for branch in ((0, 114, 178), (230, 159, 0)):
+            assert (colours == branch).all(axis=1).any()
