@@ -138,6 +138,9 @@ def _guarded(work: Callable[[], int], interrupts: Sequence[int]) -> int:
     except BaseException as fault:
         # An interrupt that a library turned into an error of its own is one all the same.
         if interrupts or isinstance(fault, KeyboardInterrupt):
+            # Raised below a library's exec("..."), while it imports, Python 3.11 in the end dies of it (-2) although it was caught;
+            # it forgets where another exec begins.
+            exec("")
             return _complain("interrupted; nothing half-written was left", INTERRUPTED)
         return _explain(fault)
 
