@@ -228,3 +228,20 @@ COMPRESSIBLE = 0.1
 
 #: An angle of force is none where a profile leaves more than this part unexplained: interpolation alone leaves up to a tenth.
 SPLIT_UNEXPLAINED = 0.25
+
+#: A bright spot is a pin's tip from and to these parts of the usual spot's area: a tip of six pixels keeps two to eighteen, specks have
+#: one, and a fingertip's rim has a hundred times as many.
+PIN_AREA = (0.25, 3.0)
+
+#: A pin's tip is looked for within this part of the distance to its nearest neighbour: from a half on it could be the neighbour's.
+PIN_REACH = 0.55
+
+#: So many neighbours say where a pin that is not found has gone: those round it in a hexagonal pattern.
+PIN_NEIGHBOURS = 6
+
+#: A spot that this part of the images have is a pin; others are specks and reflections.
+PIN_KEPT = 0.9
+
+#: Principal components of the pins' places that are kept: with 30 to 80 an edge's errors on real images hardly differ, and beyond that
+#: they are the pixels' noise.
+PIN_COMPONENTS = 80
