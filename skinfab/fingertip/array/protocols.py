@@ -154,8 +154,13 @@ def twirl(device: Device, *, seed: int = 0) -> tuple[Recording, tuple[Event, ...
     touches = Touches(
         column(axial, math.nan), column(np.array([wrapped(a) for a in angle]), math.nan), column(force, 0.0), column(line, math.nan)
     )
-    at = lambda k: (k + rest) / TWIRL_HZ  # noqa: E731
-    moved = lambda a, b: (float(path[b, 0] - path[a, 0]), float(path[b, 1] - path[a, 1]))  # noqa: E731
+
+    def at(k: int) -> float:
+        return (k + rest) / TWIRL_HZ
+
+    def moved(a: int, b: int) -> tuple[float, float]:
+        return float(path[b, 0] - path[a, 0]), float(path[b, 1] - path[a, 1])
+
     events = (
         Event("touch", at(0), at(0)),
         Event("roll", at(1), at(first_to - 1), *moved(1, first_to - 1)),

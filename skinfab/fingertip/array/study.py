@@ -160,9 +160,10 @@ def rods_on(device: Device, count: int, *, seed: int = 0, between: bool = False,
 def three_fingers(devices: Sequence[Device], count: int, *, seed: int = 0) -> dict[str, FloatArray]:
     """Errors, degrees, of the direction that three fingers tell together, by each way."""
     each = [rods_on(device, count, seed=10 * seed + k) for k, device in enumerate(devices)]
+    ways = [turners(device.geometry) for device in devices]
     out = {}
-    for name in turners(devices[0].geometry):
-        found = [[turners(device.geometry)[name](Z) for Z in rods.Z] for device, rods in zip(devices, each, strict=True)]
+    for name in ways[0]:
+        found = [[way[name](Z) for Z in rods.Z] for way, rods in zip(ways, each, strict=True)]
         out[name] = np.array([_off(combined(those), line) for *those, line in zip(*found, each[0].line_deg, strict=True)])
     return out
 
