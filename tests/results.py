@@ -82,7 +82,7 @@ def overlap(UV: np.ndarray, FT: np.ndarray) -> float:
     """Part of the flat area that is covered more than once."""
     triangles = shapely.polygons(UV[FT])
     total = float(shapely.area(triangles).sum())
-    return 1 - float(shapely.union_all(triangles, grid_size=1e-7).area) / total
+    return 1 - float(shapely.union_all(triangles).area) / total
 
 
 def arc_faults(text: str) -> tuple[int, list[str]]:

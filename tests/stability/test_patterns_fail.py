@@ -120,7 +120,7 @@ def test_verdicts_are_those_of_fine_chords_but_for_what_chords_cannot_tell() -> 
     room = outline(piece)
     patterns = [make_pattern(kind, {**params, "bead": BEAD, "gap": GAP}) for kind, params in FITTING.items()]
     judged = {True: 0, False: 0}
-    for k in range(240):
+    for k in range(120):
         pattern = patterns[k % len(patterns)]
         x, y, angle = rng.uniform((-38, -38, 0), (38, 38, 2 * np.pi))
         sensor = Sensor("C1", "P1", pattern, x, y, angle, 0)

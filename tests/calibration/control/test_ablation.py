@@ -18,12 +18,12 @@ MATTERS = Figures(0.1, 0.005, 0.1, 0.005, 0.3, 0.8, 0.3, 0.5)
 
 @pytest.fixture(scope="module")
 def whole() -> np.ndarray:
-    return np.array(astuple(figures_without("nothing", seeds=(0, 1))))
+    return np.array(astuple(figures_without("nothing", seeds=(0,))))
 
 
 @pytest.mark.parametrize("term", TERMS[1:])
 def test_a_figure_changes_without_it(term: str, whole: np.ndarray) -> None:
-    change = np.abs(np.array(astuple(figures_without(term, seeds=(0, 1)))) - whole)
+    change = np.abs(np.array(astuple(figures_without(term, seeds=(0,)))) - whole)
     change[[0, 2]] /= whole[[0, 2]]
     assert (change > astuple(MATTERS)).any(), change
 
