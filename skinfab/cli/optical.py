@@ -8,6 +8,7 @@ import importlib
 #: Sub-command and what it is for; `skinfab/cli/optical_NAME.py` holds it.
 STEPS = {
     "simulate": "images of a simulated fingertip on an edge, with the edge's true pose",
+    "train": "learn an edge's pose from labelled images, and say how good that is on images that were held out",
 }
 
 

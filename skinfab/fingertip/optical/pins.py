@@ -155,7 +155,7 @@ class Pins:
     def of_rest(cls, image: Image) -> Pins:
         """From an image of the untouched fingertip."""
         level = level_of([image])
-        return cls(find_tips(image, level), image.shape, level)  # type: ignore[arg-type]
+        return cls(find_tips(image, level), image.shape, level)
 
     @classmethod
     def of_images(cls, images: Sequence[Image]) -> Pins:
@@ -172,11 +172,11 @@ class Pins:
         counts = np.array([len(each) for each in tips])
         rest = tips[int(np.abs(counts - np.median(counts)).argmin())]
         for _ in range(_ROUNDS):
-            pins = cls(rest, some[0].shape, level)  # type: ignore[arg-type]
+            pins = cls(rest, some[0].shape, level)
             found = [pins.match(each) for each in tips]
             missing = np.mean([each.missing for each in found], axis=0)
             rest = (pins.rest + np.mean([each.moved for each in found], axis=0))[missing < 1 - PIN_KEPT]
-        return cls(rest, some[0].shape, level)  # type: ignore[arg-type]
+        return cls(rest, some[0].shape, level)
 
     @cached_property
     def _near(self) -> tuple[IntArray, FloatArray]:

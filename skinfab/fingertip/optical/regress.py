@@ -26,7 +26,7 @@ FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
 #: Widths (for features of a mean square of 1) and ridges that are tried.
-GAMMAS, RIDGES = (0.15, 0.3, 0.6), (3e-3, 1e-2, 3e-2)
+GAMMAS, RIDGES = (0.3, 0.6, 1.2), (3e-3, 1e-2, 3e-2)
 #: How the image that is judged differs from all that was learned is measured by what this part of held-out images reach.
 _USUAL = 0.99
 #: Groups that settings are chosen on: a fifth.
@@ -120,7 +120,7 @@ class Examples:
     truth: FloatArray
 
     @classmethod
-    def of(cls, images: Sequence[Image], edges: Sequence[Edge], *, rest: Image | None = None) -> Examples:
+    def of(cls, images: Sequence[Image], edges: Sequence[Edge], *, rest: Image | None = None, pins: Pins | None = None) -> Examples:
         """Track the pins of images.
 
         Parameters
@@ -130,6 +130,8 @@ class Examples:
             What is true; depth is learned where all have one.
         rest : (h, w) uint8, optional
             The untouched fingertip; without it the pins' usual places count as rest.
+        pins : Pins, optional
+            Those of a model that is to be judged, instead of either: any number of images will do.
 
         Raises
         ------
@@ -138,14 +140,15 @@ class Examples:
         """
         if len(images) != len(edges):
             raise InputError(f"{len(images)} images and {len(edges)} edges; give one an image")
-        if len(images) < LEAST_IMAGES:
+        if pins is None and len(images) < LEAST_IMAGES:
             raise InputError(f"{len(images)} images; {LEAST_IMAGES} or more are needed to learn from, and hundreds to learn well")
         shape = images[0].shape
         for k, image in enumerate(images):
             require_image(image, f"image {k + 1}")
             if image.shape != shape:
                 raise InputError(f"image {k + 1} is of {image.shape} pixels and the first of {shape}; give images of one camera")
-        pins = Pins.of_images(images) if rest is None else Pins.of_rest(require_image(rest, "the image at rest"))
+        if pins is None:
+            pins = Pins.of_images(images) if rest is None else Pins.of_rest(require_image(rest, "the image at rest"))
         tracked = [pins.track(image) for image in images]
         truth = np.array([[e.offset_mm, math.cos(e.angle_rad), math.sin(e.angle_rad), e.depth_mm] for e in edges])
         if not np.isfinite(truth[:, :3]).all():

@@ -1,0 +1,47 @@
+"""One picture file as a grey image."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import cv2
+import numpy as np
+
+from skinfab.errors import InputError
+from skinfab.fingertip.optical.pins import Image
+
+#: What is taken for a picture in a folder.
+SUFFIXES = (".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".pgm")
+#: What a simulator writes into its pictures, near their beginning.
+_SIMULATED, _HEAD = b"simulated: true", 4096
+
+
+def read_picture(path: str | Path) -> tuple[Image, bool]:
+    """A picture in grey, (h, w) uint8, and whether it says that it is simulated.
+
+    Raises
+    ------
+    InputError
+        There is no such file, or it is no picture.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> path = Path(tempfile.mkdtemp()) / "one.png"
+    >>> _ = cv2.imwrite(str(path), np.full((20, 30), 7, np.uint8))
+    >>> image, simulated = read_picture(path)
+    >>> image.shape, int(image[0, 0]), simulated
+    ((20, 30), 7, False)
+    """
+    path = Path(path)
+    try:
+        data = path.read_bytes()
+    except OSError as fault:
+        raise InputError(f"{path}: {fault.strerror or fault}; give a picture that can be read") from fault
+    try:
+        image = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_GRAYSCALE) if data else None
+    except cv2.error:
+        image = None
+    if image is None:
+        raise InputError(f"{path} is no picture that can be read; give PNG, JPEG, BMP, TIFF or PGM, whole")
+    return image.astype(np.uint8, copy=False), _SIMULATED in data[:_HEAD]
