@@ -1,12 +1,16 @@
 """Lets every test import the shared shapes (`import shapes`), and what tests start be interrupted; pictures are made small."""
 
+import fcntl
+import os
+import shutil
 import signal
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 
+from skinfab.cli.main import main
 from skinfab.report import preview
 
 sys.path.insert(0, str(Path(__file__).parent))
@@ -16,6 +20,24 @@ sys.path.insert(0, str(Path(__file__).parent))
 for number in (signal.SIGINT, signal.SIGHUP):
     if signal.getsignal(number) == signal.SIG_IGN:
         signal.signal(number, lambda *_: None)
+
+
+@pytest.fixture(scope="session")
+def cut_once(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str, Path], Path]:
+    """What `skinfab segment` makes of an object of ours by its defaults, to be changed: a copy. Cut once for all tests and workers."""
+    folder = tmp_path_factory.getbasetemp()
+    if "PYTEST_XDIST_WORKER" in os.environ:
+        folder = folder.parent  # all workers'
+
+    def copied(name: str, to: Path) -> Path:
+        document = folder / f"{name}.skin"
+        with (folder / f"{name}.lock").open("w") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            if not document.exists():
+                assert main(["segment", str(Path(__file__).parents[1] / f"meshes/{name}.obj"), "-o", str(document)]) == 0
+        return Path(shutil.copy(document, to))
+
+    return copied
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -1,5 +1,6 @@
 """A thick nozzle: what is placed for it can be printed with it, and what was placed for a thin one is refused."""
 
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -48,9 +49,10 @@ def test_make_and_place_keep_the_nozzle_off_the_wall(fat: Path, tmp_path: Path, 
     assert "C1 is" in capfd.readouterr().err
 
 
-def test_sensors_placed_for_a_thin_nozzle_are_refused(fat: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
-    document = tmp_path / "thin.skin"
-    assert main(["segment", str(ROOT / "meshes/robot_finger.obj"), "-o", str(document)]) == 0
+def test_sensors_placed_for_a_thin_nozzle_are_refused(
+    fat: Path, cut_once: Callable[[str, Path], Path], tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    document = cut_once("robot_finger", tmp_path / "thin.skin")
     assert main(["place", str(document)]) == 0
     assert nearest_to_an_edge(document) < 2.2
     assert main(["gcode", str(document), "-o", str(tmp_path / "out"), "--printer", str(fat)]) == 3

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from itertools import combinations
 from pathlib import Path
@@ -17,8 +18,6 @@ from skinfab.drawings.seam_sides import SeamSide, seam_sides
 from skinfab.pieces import Piece
 from skinfab.skin import Skin
 from skinfab.wire_exits import wire_pads
-
-ROOT = Path(__file__).parents[2]
 
 
 def plate(w: float, h: float) -> Piece:
@@ -95,10 +94,12 @@ def test_a_number_that_has_to_lie_on_ink_gets_white_behind_it(skin: Skin) -> Non
 
 
 @pytest.mark.parametrize(("name", "least", "most"), [("cup", 25, 1), ("robot_finger", 4, 0)])
-def test_numbers_of_a_whole_skin_keep_off_its_conductors(name: str, least: int, most: int, tmp_path: Path) -> None:
-    assert main(["segment", str(ROOT / f"meshes/{name}.obj"), "-o", str(tmp_path / "a.skin")]) == 0
-    assert main(["place", str(tmp_path / "a.skin")]) == 0
-    whole = load_skin(tmp_path / "a.skin")
+def test_numbers_of_a_whole_skin_keep_off_its_conductors(
+    name: str, least: int, most: int, cut_once: Callable[[str, Path], Path], tmp_path: Path
+) -> None:
+    document = cut_once(name, tmp_path / "a.skin")
+    assert main(["place", str(document)]) == 0
+    whole = load_skin(document)
     sides, numbers, over = seam_sides(whole.pieces), 0, 0
     for k, piece in enumerate(whole.pieces):
         sensors = whole.sensors_on(piece.id)

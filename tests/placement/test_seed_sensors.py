@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib.util
 import math
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
 
@@ -31,10 +32,9 @@ SEED = tool()
 
 
 @pytest.mark.parametrize("name", [*SEED.TABLE_II, *SEED.STRAIN])
-def test_the_papers_sensors_fit_on_our_object(name: str, tmp_path: Path) -> None:
-    document, wanted = tmp_path / "a.skin", tmp_path / "sensors.toml"
+def test_the_papers_sensors_fit_on_our_object(name: str, cut_once: Callable[[str, Path], Path], tmp_path: Path) -> None:
+    document, wanted = cut_once(name, tmp_path / "a.skin"), tmp_path / "sensors.toml"
     wanted.write_text(SEED.sensors_toml(name))
-    assert main(["segment", str(ROOT / f"meshes/{name}.obj"), "-o", str(document)]) == 0
     assert main(["place", str(document), "--sensors", str(wanted)]) == 0
     skin = load_skin(document)
     assert [sensor.pattern for sensor in skin.sensors] == SEED.patterns(name)
