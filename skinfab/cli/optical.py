@@ -9,6 +9,7 @@ import importlib
 STEPS = {
     "simulate": "images of a simulated fingertip on an edge, with the edge's true pose",
     "train": "learn an edge's pose from labelled images, and say how good that is on images that were held out",
+    "run": "the edge in each image of a folder, of a video or of a camera",
 }
 
 

@@ -1,0 +1,161 @@
+"""`skinfab optical run DIR|VIDEO|--camera N --model MODEL.npz -o DIR`: the edge in each image."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import signal
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from skinfab.cli import steps
+
+if TYPE_CHECKING:
+    from skinfab.fingertip.optical.images import ImageSource, Picture
+    from skinfab.readout.frame import Frame
+
+FILES = ("edges.csv", "optical.png", "result.json")
+#: How long to wait for a picture before looking whether time is up, s.
+_WAIT_S = 0.2
+#: What is no more than half sure is pointed out.
+_SURE = 0.5
+
+
+def add_options(p: argparse.ArgumentParser) -> None:
+    """What is looked at, with which model, and where the results go."""
+    p.add_argument("images", metavar="IMAGES", type=Path, nargs="?", help="a folder of pictures, or a video")
+    p.add_argument("--camera", metavar="N", help="its number from 0 (or an address), until Ctrl-C, instead")
+    p.add_argument("--model", metavar="MODEL.npz", type=Path, required=True, help="from skinfab optical train, of this fingertip")
+    p.add_argument("--rate", metavar="HZ", type=steps.positive, help="pictures a second of a folder (default: 30)")
+    p.add_argument("--seconds", metavar="S", type=steps.positive, help="of a camera: end after so long (default: at Ctrl-C)")
+    p.add_argument("-o", "--output", metavar="DIR", type=Path, required=True, help="folder for the table of edges, result and figure")
+    p.add_argument("--json", action="store_true", help="print the result as one JSON object and nothing else")
+    p.set_defaults(run=run)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Look, write, and say what was felt."""
+    from skinfab.errors import InputError
+    from skinfab.files import atomic_write, require_apart
+    from skinfab.fingertip.optical.edge import Edge
+    from skinfab.fingertip.optical.figure import draw_run
+    from skinfab.fingertip.optical.model_file import load_edge
+    from skinfab.fingertip.optical.source import EdgeSource
+    from skinfab.staging import staged_folder
+
+    if (args.images is None) == (args.camera is None):
+        args.wrong_usage("give IMAGES or --camera N, one of them")
+    if args.seconds is not None and args.camera is None:
+        args.wrong_usage("--seconds is for a camera")
+    require_apart(args.output, FILES, [path for path in (args.images, args.model) if path is not None])
+    model, made_from = load_edge(args.model)
+    source = EdgeSource(_images(args), model)
+    felt, spent = _felt(args, source)
+    if not felt:
+        raise InputError(f"{source.images.name} gave no picture that can be read; {'; '.join(source.images.notes) or 'look at it'}")
+    rows = (frame.values.tolist() for _, frame in felt)
+    edges = [Edge(offset, math.radians(angle), depth, confidence) for offset, depth, angle, confidence in rows]
+    simulated = source.stream.simulated or bool(made_from.get("simulated"))
+    result = _facts(source.images, felt, spent, simulated=simulated)
+    with staged_folder(args.output) as folder:
+        atomic_write(folder / "edges.csv", _table(felt, simulated))
+        atomic_write(folder / "result.json", json.dumps(result, indent=1, allow_nan=False) + "\n")
+        draw_run([p.device_time for p, _ in felt], edges, folder / "optical.png", title=source.images.name, simulated=simulated)
+    if args.json:
+        print(json.dumps(result, allow_nan=False))
+        return 0
+    steps.say(result["notes"])
+    made = " (simulated)" if simulated else ""
+    print(
+        f"{result['source']}{made}: {result['pictures']} pictures, {result['sure']} of them more than half sure; "
+        f"{result['ms']['median']:.2f} ms from picture to edge, worst {result['ms']['worst']:.2f}"
+    )
+    print(f"{args.output}: {', '.join(FILES)}")
+    return 0
+
+
+def _images(args: argparse.Namespace) -> ImageSource:
+    from skinfab.fingertip.optical.images import RATE_HZ, CameraImages, FolderImages, VideoImages
+
+    if args.camera is not None:
+        if args.rate is not None:
+            args.wrong_usage("--rate is for a folder: a camera has its own")
+        return CameraImages(int(args.camera) if args.camera.isdecimal() else args.camera)
+    if args.images.is_dir():
+        return FolderImages(args.images, rate_hz=args.rate or RATE_HZ)
+    if args.rate is not None:
+        args.wrong_usage("--rate is for a folder: a video has its own")
+    return VideoImages(args.images)
+
+
+def _felt(args: argparse.Namespace, source: Any) -> tuple[list[tuple[Picture, Frame]], list[float]]:
+    """Every picture with its frame, and how long each took from picture to edge, ms."""
+    felt: list[tuple[Picture, Frame]] = []
+    spent: list[float] = []
+    end = time.monotonic() + (args.seconds or math.inf)
+    with source:
+        try:
+            while not source.images.ended and (left := end - time.monotonic()) > 0:
+                if (frame := source.read(min(left, _WAIT_S))) is None:
+                    continue
+                spent.append(source.last_ms)
+                felt.append((source.last, frame))
+                if args.camera is not None and not args.json:
+                    print(_words(frame), flush=True)
+        except KeyboardInterrupt:
+            if args.camera is None:
+                raise
+            signal.setitimer(signal.ITIMER_REAL, 0)  # the way to end it: it has got through, and is not to come a second time
+    return felt, spent
+
+
+def _words(frame: Frame) -> str:
+    """
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from skinfab.readout.frame import Frame
+    >>> yes = np.ones(4, dtype=bool)
+    >>> _words(Frame(1.0, 1.0, 0, np.array([0.5, 2.0, -90.0, 0.9]), yes, ~yes))
+    '    1.00 s  +0.50 mm off the plate, -90.0 deg, 90 % sure'
+    """
+    offset, _, angle, sure = frame.values
+    return f"{frame.device_time:8.2f} s  {offset:+.2f} mm off the plate, {angle:.1f} deg, {100 * sure:.0f} % sure"
+
+
+def _facts(images: ImageSource, felt: list[tuple[Picture, Frame]], spent: list[float], *, simulated: bool) -> dict[str, Any]:
+    sure = sum(float(frame.values[3]) > _SURE for _, frame in felt)
+    notes = list(images.notes)
+    for count, how in ((images.counts.lost, "lost"), (images.counts.bad, "unreadable")):
+        if count:
+            notes.append(f"{count} pictures were {how}")
+    if sure < len(felt):
+        notes.append(
+            f"{len(felt) - sure} pictures are unlike what was learned, or far from an edge; what is said of them is not to be trusted"
+        )
+    return {
+        "source": images.name,
+        "simulated": simulated,
+        "pictures": len(felt),
+        "lost": images.counts.lost,
+        "unreadable": images.counts.bad,
+        "sure": sure,
+        "ms": {"median": sorted(spent)[len(spent) // 2], "worst": max(spent)},
+        "notes": notes,
+    }
+
+
+def _table(felt: list[tuple[Picture, Frame]], simulated: bool) -> str:
+    import csv
+    import io
+
+    text = io.StringIO()
+    rows = csv.writer(text, lineterminator="\n")
+    rows.writerow(["time_s", "host_time_s", "sequence", "image", "offset_mm", "depth_mm", "angle_deg", "confidence", "simulated"])
+    for picture, frame in felt:
+        numbers = (f"{v:.5f}" if math.isfinite(v) else "" for v in frame.values.tolist())
+        row = [f"{picture.device_time:.6f}", f"{picture.host_time:.6f}", picture.sequence, picture.name, *numbers, int(simulated)]
+        rows.writerow(row)
+    return text.getvalue()
