@@ -28,9 +28,12 @@ class History(Generic[T]):
     """
 
     now: T
-    _past: list[tuple[str, T]] = field(default_factory=list)
-    _future: list[tuple[str, T]] = field(default_factory=list)
+    #: The step that made the present: 0 before any; each `do` has a number of its own, which undo and redo come back to.
+    step: int = 0
+    _past: list[tuple[str, T, int]] = field(default_factory=list)
+    _future: list[tuple[str, T, int]] = field(default_factory=list)
     _merging: object = None
+    _newest: int = 0
 
     def do(self, label: str, value: T, *, merge: object = None) -> None:
         """Make `value` the present; what was undone is forgotten.
@@ -38,11 +41,13 @@ class History(Generic[T]):
         Steps in a row with the same `merge`, such as those of one drag, are undone as one.
         """
         if merge is None or merge != self._merging or not self._past:
-            self._past.append((label, self.now))
+            self._past.append((label, self.now, self.step))
             del self._past[:-MOST_STEPS]
         self._merging = merge
         self._future.clear()
         self.now = value
+        self._newest += 1
+        self.step = self._newest
 
     def amend(self, value: T) -> None:
         """Replace the present by what belongs to it; no step of its own."""
@@ -66,10 +71,10 @@ class History(Generic[T]):
         """What `redo` would do again."""
         return self._future[-1][0] if self._future else None
 
-    def _step(self, source: list[tuple[str, T]], target: list[tuple[str, T]]) -> str | None:
+    def _step(self, source: list[tuple[str, T, int]], target: list[tuple[str, T, int]]) -> str | None:
         if not source:
             return None
-        label, value = source.pop()
-        target.append((label, self.now))
-        self.now, self._merging = value, None
+        label, value, step = source.pop()
+        target.append((label, self.now, self.step))
+        self.now, self.step, self._merging = value, step, None
         return label

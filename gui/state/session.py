@@ -54,6 +54,11 @@ class Session:
         return self._history.now
 
     @property
+    def step(self) -> int:
+        """The step that made the document as it is: larger the later it was done first, the same again after undo and redo."""
+        return self._history.step
+
+    @property
     def dirty(self) -> bool:
         """Whether there is something that was not saved."""
         return self.skin is not self._saved

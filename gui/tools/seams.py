@@ -25,7 +25,9 @@ class _Way(Tool, ABC):
     def __init__(self, desk: Desk, show: ShowWay) -> None:
         self._desk, self._show = desk, show
         self._last = -1
+        self._ends: dict[int, int] = {}  # where the line ended after each step of the document since it was begun
         self._ways: Ways | None = None
+        desk.session.listen("skin", self._follow)
 
     @property
     @abstractmethod
@@ -46,14 +48,14 @@ class _Way(Tool, ABC):
             self._desk.say("There is no point of the object there; click on it, or on a piece.")
             return
         if self._last < 0:
-            self._last = hit.vertex
+            self._end_at(hit.vertex)
             self._show(skin.object.V[[hit.vertex]])
             self._desk.say("Now the next point; Esc ends the line.")
             return
         if hit.vertex != self._last:
             ways, start = self._ways_of(skin), self._last
             if self._desk.guarded("seams", lambda: self._do(skin, [start, hit.vertex], ways)):
-                self._last = hit.vertex
+                self._end_at(hit.vertex)
                 self._show(None)
 
     def point(self, hit: AnyHit | None) -> None:
@@ -64,7 +66,25 @@ class _Way(Tool, ABC):
 
     def stop(self) -> None:
         self._last = -1
+        self._ends.clear()
         self._show(None)
+
+    def _end_at(self, vertex: int) -> None:
+        self._last = vertex
+        self._ends[self._desk.session.step] = vertex
+
+    def _follow(self) -> None:
+        """After undo and redo the line goes on from where it ended then; undone to before its first point, it begins anew."""
+        skin, step = self._desk.session.skin, self._desk.session.step
+        if not self.begun or skin is None:
+            return
+        if step > max(self._ends):  # something new was done, which the line outlives
+            self._end_at(self._last)
+        elif step not in self._ends:
+            self.stop()
+        elif self._ends[step] != self._last:
+            self._last = self._ends[step]
+            self._show(skin.object.V[[self._last]])
 
     def _ways_of(self, skin: Skin) -> Ways:
         if self._ways is None or not self._ways.suit(skin):

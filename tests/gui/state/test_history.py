@@ -47,3 +47,22 @@ def test_the_past_is_bounded():
     while history.undo() is not None:
         count += 1
     assert count == MOST_STEPS
+
+
+def test_a_step_has_a_number_that_undo_and_redo_come_back_to():
+    history = History("a")
+    history.do("b", "b")
+    history.amend("bb")
+    first = history.step
+    history.do("c", "c", merge="drag")
+    history.do("d", "d", merge="drag")
+    second = history.step
+    assert 0 < first < second
+    history.undo()
+    assert history.step == first
+    history.undo()
+    assert history.step == 0
+    history.redo()
+    assert history.step == first
+    history.do("e", "e")
+    assert history.step > second, "never the number of a step that was forgotten"

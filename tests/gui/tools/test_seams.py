@@ -1,6 +1,7 @@
 """Seams by clicks on the real picture; the pieces follow."""
 
 import itertools
+from dataclasses import replace
 
 import pytest
 from person import MESHES
@@ -72,6 +73,39 @@ def test_a_line_begun_on_one_object_does_not_end_on_the_next(cube):
     cube.click_vertex(19)
     cube.wait()
     assert seams(cube) == set() and cube.problems() == []
+
+
+def test_after_undo_and_redo_the_line_goes_on_from_where_it_ended_then(cube):
+    cube.press("c")
+    for vertex in (0, 1, 3, 2):
+        cube.click_vertex(vertex)
+    assert seams(cube) == {(0, 1), (1, 3), (2, 3)}
+    cube.press("Control-z")
+    cube.click_vertex(7)
+    assert seams(cube) == {(0, 1), (1, 3), (3, 7)}, "from the point before, not from the one undone"
+    cube.press("Control-z")
+    cube.press("Control-z")
+    cube.press("Control-y")
+    cube.click_vertex(2)
+    assert seams(cube) == {(0, 1), (1, 3), (2, 3)}
+    cube.wait()
+
+
+def test_undone_to_before_its_first_point_a_line_begins_anew(cube):
+    cube.session.do("another seed", replace(cube.skin, seed=77))
+    cube.press("c")
+    cube.click_vertex(0)
+    cube.session.do("another seed", replace(cube.skin, seed=78))
+    cube.click_vertex(1)
+    assert seams(cube) == {(0, 1)}, "what else is done meanwhile does not end it"
+    for _ in range(3):
+        cube.press("Control-z")
+    assert not cube.app.toolbox.held.begun
+    cube.press("Control-y")
+    cube.click_vertex(3)
+    assert seams(cube) == set() and cube.app.toolbox.held.begun
+    cube.press("Escape")
+    cube.wait()
 
 
 def test_the_way_is_shown_before_it_is_cut(cube, monkeypatch):
