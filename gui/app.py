@@ -311,7 +311,8 @@ class App:
             self.session.report("autosave", [Problem(sentence, "autosave", kind="warning")])
 
     def _progress(self, step: Step | None) -> None:
-        self.status.progress(step)
+        job = self.runner.job
+        self.status.progress(step, asked=job is not None and not job.own)
         if step is None and self._behind is None:
             self._behind = self.root.after_idle(self._catch_up)
 

@@ -32,7 +32,7 @@ class StatusBar(ttk.Frame):
         super().__init__(master, name="statusbar", padding=(8, 2))
         self._session, self._describe = session, describe
         self._tip = ""
-        self._began = 0.0
+        self._began, self._asked = 0.0, False
         self.text = tk.StringVar(self, value="Open a mesh or a skin to begin (Ctrl+O).")
         ttk.Label(self, textvariable=self.text, name="text").pack(side="left", fill="x", expand=True)
         ttk.Label(self, text="mm", style="Faint.TLabel").pack(side="right", padx=(10, 0))
@@ -42,6 +42,9 @@ class StatusBar(ttk.Frame):
         self._bar = ttk.Progressbar(self._work, length=px(self, 160), maximum=1.0, name="bar")
         self._bar.pack(side="left", padx=6)
         ttk.Button(self._work, text="Cancel", command=cancel, style="Tool.TButton", name="cancel").pack(side="left")
+        # As high without work as with it: the views must not move when it begins and ends.
+        height = max(child.winfo_reqheight() for child in self._work.winfo_children())
+        ttk.Frame(self, height=height, width=1, name="strut").pack(side="right")
         session.listen("hover", self._refresh)
         session.listen("skin", self._refresh)
 
@@ -54,12 +57,15 @@ class StatusBar(ttk.Frame):
         """Show a sentence until something else is pointed at."""
         self.text.set(text)
 
-    def progress(self, step: Step | None) -> None:
-        """Show how far the work is; None when there is none."""
+    def progress(self, step: Step | None, *, asked: bool = False) -> None:
+        """Show how far the work is; None when there is none. What was said before work that was `asked` for is no longer shown."""
         if step is None:
             self._work.pack_forget()
-            self._began = 0.0
+            self._began, self._asked = 0.0, False
             return
+        if asked and not self._asked:
+            self._asked = True
+            self._refresh()
         if not self._began:
             self._began = time.monotonic()
             self._work.pack(side="right")

@@ -41,3 +41,26 @@ def test_an_estimate_is_given_once_there_is_one(root, session, monkeypatch):
     now[0] = 500.0
     bar.progress(Step(0.5, "cutting"))
     assert bar.progress_text.get() == "cutting, 7 min left"
+
+
+def test_it_is_as_high_with_work_as_without(root, session):
+    bar = StatusBar(root, session, cancel=lambda: None, describe=str)
+    bar.pack(fill="x")
+    root.update()
+    idle = bar.winfo_height()
+    bar.progress(Step(0.25, "cutting"))
+    root.update()
+    assert bar.nametowidget("work").winfo_ismapped() and bar.winfo_height() == idle
+
+
+def test_what_was_said_before_work_that_is_asked_for_is_no_longer_shown(root, session):
+    bar = StatusBar(root, session, cancel=lambda: None, describe=lambda: "over P1")
+    bar.say("cannot write out/P1.gcode")
+    bar.progress(Step(0.0, "flattening"))
+    assert bar.text.get() == "cannot write out/P1.gcode", "nobody has asked for that"
+    bar.progress(None)
+    bar.progress(Step(0.0, "exporting"), asked=True)
+    assert bar.text.get() == "over P1"
+    bar.say("in between")
+    bar.progress(Step(0.5, "exporting"), asked=True)
+    assert bar.text.get() == "in between"
