@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import tkinter as tk
-from tkinter import ttk
+from tkinter import font, ttk
 
 from gui.scale import measured, px
 from gui.state.derived import Derived
 from gui.state.selection import NOTHING, Target
 from gui.state.session import Session
 
-_COLUMNS = (("id", "piece", 50), ("size", "size, mm", 74), ("mean", "d mean", 74), ("p99", "p99", 46), ("max", "max", 46))
+#: Name, heading, and px at 96 dots an inch that its values need; a column is wider where its heading, or a large size, needs that.
+_COLUMNS = (("id", "id", 40), ("size", "size, mm", 74), ("mean", "d mean", 44), ("p99", "p99", 40), ("max", "max", 40))
+
+#: What a cell leaves free beside its words, px at 96 dots an inch.
+_BESIDE = 10
 
 
 class PiecesPanel(ttk.Frame):
@@ -51,24 +55,41 @@ class PiecesPanel(ttk.Frame):
             d = self._derived.distortion(skin.mesh, piece)
             size = f"{piece.size[0]:.0f} x {piece.size[1]:.0f}"
             self.list.insert("", "end", iid=piece.id, values=(piece.id, size, f"{d.mean:.3f}", f"{d.p99:.2f}", f"{d.max:.2f}"))
+        self._widen()
         loose = int((self._derived.piece_of_face(skin) < 0).sum())
         words = f"{len(skin.mesh.F)} triangles, {len(skin.pieces)} piece{'' if len(skin.pieces) == 1 else 's'}"
         self.summary.set(words + (f"; {loose} triangles do not lie flat yet" if loose else ""))
         self._follow()
 
+    def _widen(self) -> None:
+        """Large pieces have long sizes: none is cut off."""
+        sizes = [self.list.set(id, "size") for id in self.list.get_children()]
+        name, heading, width = _COLUMNS[1]
+        letters = font.nametofont(str(ttk.Style(self).lookup("Treeview", "font")) or "TkDefaultFont", root=self)
+        least = max(px(self, width), measured(self, heading), *(letters.measure(words) + px(self, _BESIDE) for words in sizes))
+        if least != self.list.column(name, "minwidth"):
+            self.list.column(name, width=least, minwidth=least)
+
     def _follow(self) -> None:
         """Select what the session has selected."""
-        piece = self._session.selected.piece
+        piece = self._selected_piece()
         wanted = (piece,) if piece and self.list.exists(piece) else ()
         if self.list.selection() != wanted:
             self.list.selection_set(wanted)
             if wanted:
                 self.list.see(piece)
 
+    def _selected_piece(self) -> str:
+        """The piece that is selected, or on which the selected sensor lies by now: it may have been dragged to another."""
+        skin, selected = self._session.skin, self._session.selected
+        if skin is None or not selected.sensor:
+            return selected.piece
+        return next((s.piece for s in skin.sensors if s.id == selected.sensor), selected.piece)
+
     def _chosen(self, event: tk.Event) -> None:
         chosen = self.list.selection()
         selected = self._session.selected
-        if chosen and chosen[0] != selected.piece:
+        if chosen and chosen[0] != self._selected_piece():
             self._session.select(Target(piece=chosen[0]))
         elif not chosen and selected.piece and not selected.sensor:
             self._session.select(NOTHING)

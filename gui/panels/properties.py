@@ -12,6 +12,7 @@ from gui.panels.piece_facts import PieceFacts
 from gui.panels.sensor_form import SensorForm
 from gui.state.derived import Derived
 from gui.state.profiles import ProfileShelf
+from gui.state.selection import Target
 from gui.state.session import Session
 from skinfab.skin import Skin
 
@@ -63,7 +64,7 @@ class PropertiesPanel(ttk.Frame):
         if skin is None:
             wanted, title = "", ""
         elif selected.sensor:
-            wanted, title = "sensor", self._sensor_title(skin, selected.sensor)
+            wanted, title = "sensor", self._sensor_title(skin, selected)
         elif selected.piece:
             wanted, title = "piece", f"Piece {selected.piece}"
         else:
@@ -78,6 +79,7 @@ class PropertiesPanel(ttk.Frame):
         if wanted:
             self._forms[wanted].refresh()
 
-    def _sensor_title(self, skin: Skin, id: str) -> str:
-        sensor = next(s for s in skin.sensors if s.id == id)
-        return f"{id}: {sensor.pattern.kind} on {sensor.piece}"
+    def _sensor_title(self, skin: Skin, selected: Target) -> str:
+        there = {s.id: s for s in skin.sensors}
+        sensor, more = there[selected.sensor], sum(id in there for id in selected.also)
+        return f"{sensor.id}: {sensor.pattern.kind} on {sensor.piece}" + (f", and {more} more" if more else "")

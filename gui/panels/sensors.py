@@ -33,6 +33,7 @@ class SensorsPanel(ttk.Frame):
         bar.pack(side="right", fill="y")
         self.list.pack(side="left", fill="both", expand=True)
         self.list.bind("<<TreeviewSelect>>", self._chosen)
+        self.list.bind("<Configure>", lambda event: self.after_idle(self._see))  # the form below grows for what was selected
         session.listen("skin", self._refresh)
         session.listen("selection", self._follow)
         self._refresh()
@@ -56,8 +57,11 @@ class SensorsPanel(ttk.Frame):
         wanted = (sensor,) if sensor and self.list.exists(sensor) else ()
         if self.list.selection() != wanted:
             self.list.selection_set(wanted)
-            if wanted:
-                self.list.see(sensor)
+            self._see()
+
+    def _see(self) -> None:
+        for id in self.list.selection():
+            self.list.see(id)
 
     def _chosen(self, event: tk.Event) -> None:
         chosen, skin = self.list.selection(), self._session.skin

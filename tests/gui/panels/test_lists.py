@@ -89,3 +89,42 @@ def test_forms_are_as_high_as_the_one_that_is_shown(root, session):
         root.wait_variable("shown")
         heights.append(forms.winfo_height())
     assert heights[0] == heights[2] == heights[1] - 240
+
+
+def test_sizes_of_large_pieces_are_not_cut_off(root, session, pieces):
+    large = [replace(p, UV=p.UV * (12.24, 9.28)) for p in session.skin.pieces]
+    session.do("large", replace(session.skin, pieces=tuple(large), sensors=()))
+    assert pieces.list.set("P1", "size") == "1224 x 928"
+    letters = font.nametofont("TkDefaultFont", root=root)
+    assert pieces.list.column("size", "width") >= letters.measure("1224 x 928") + 8
+    # The side panel is 320 wide, with 4 left free at either side, and the scroll bar.
+    bar = next(w for w in pieces.list.master.winfo_children() if isinstance(w, ttk.Scrollbar))
+    assert sum(pieces.list.column(c, "minwidth") for c in pieces.list["columns"]) <= 312 - bar.winfo_reqwidth()
+
+
+def test_the_piece_of_a_sensor_that_was_dragged_to_another_is_shown(root, session, pieces):
+    session.select(Target(piece="P1", sensor="C1"))
+    moved = tuple(replace(s, piece="P2") if s.id == "C1" else s for s in session.skin.sensors)
+    session.do("move C1", replace(session.skin, sensors=moved))
+    root.update()
+    assert pieces.list.selection() == ("P2",) and session.selected.sensor == "C1"
+    session.undo()
+    root.update()
+    assert pieces.list.selection() == ("P1",) and session.selected.sensor == "C1"
+
+
+def test_the_selected_row_is_seen_when_the_list_gets_less_room(root, session):
+    made = tuple(replace(session.skin.sensors[0], id=f"C{k}", channel=k) for k in range(1, 13))
+    session.do("many", replace(session.skin, sensors=made))
+    box = ttk.Frame(root, width=320, height=400)
+    box.pack_propagate(False)
+    box.pack()
+    panel = SensorsPanel(box, session, ProfileShelf())
+    panel.pack(fill="both", expand=True)
+    root.update()
+    session.select(Target(piece="P1", sensor="C12"))
+    root.update()
+    assert panel.list.bbox("C12")
+    box.configure(height=140)
+    root.update()
+    assert panel.list.bbox("C12") and not panel.list.bbox("C1")

@@ -114,3 +114,10 @@ def test_another_printer_is_chosen(root, session, panel):
     box.event_generate("<<ComboboxSelected>>")
     root.update()
     assert session.skin.printer == "generic-grbl" and session.undo_label == "other printer"
+
+
+def test_several_selected_sensors_are_counted(root, session, panel):
+    session.select(Target(piece="P1", sensor="C1", also=("C2", "C9")))
+    assert panel.title.get() == "C1: contact-spiral on P1, and 1 more", "C9 is gone"
+    session.select(Target(piece="P1", sensor="C2"))
+    assert panel.title.get() == "C2: contact-spiral on P1"
