@@ -22,6 +22,7 @@ NAMES = {
     "texture": "length and peaks of a spectrum against how often a texture is told right",
     "readout": "framing and byte errors against frames lost and wrong in silence",
     "array": "interpolators and densities of a tactel array against errors and time",
+    "optical": "following an edge by merged pins and by a felt pose: closed contours by step and noise",
     "nail": "the published method beside the improved one, and the length of the window against accuracy and latency",
 }
 
@@ -38,6 +39,7 @@ MODULES = {
     "texture": ("skinfab.bench.texture", False),
     "readout": ("skinfab.bench.readout", False),
     "array": ("skinfab.bench.array", False),
+    "optical": ("skinfab.bench.optical", False),
     "nail": ("skinfab.bench.nail", False),
 }
 

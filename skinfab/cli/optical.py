@@ -1,4 +1,4 @@
-"""`skinfab optical simulate`: a camera in a soft fingertip, which sees the pins of its skin lean."""
+"""`skinfab optical simulate|train|run|bench`: a camera in a soft fingertip, which sees the pins of its skin lean."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ STEPS = {
     "simulate": "images of a simulated fingertip on an edge, with the edge's true pose",
     "train": "learn an edge's pose from labelled images, and say how good that is on images that were held out",
     "run": "the edge in each image of a folder, of a video or of a camera",
+    "bench": "the published way of following an edge beside the improved one, by step and by noise",
 }
 
 

@@ -92,7 +92,8 @@ class _Walk:
         """Keep where it is and where the edge; true when that closes the contour."""
         self.path.append(self.robot.at.copy())
         self.edge.append(edge)
-        far = float(np.linalg.norm(self.path[-1] - self.path[0]))
+        # The edge, not the fingertip: that may have been put down beside it.
+        far = float(np.linalg.norm(edge - self.edge[0]))
         self.away = self.away or far > AWAY_MM
         return self.away and far <= max(NEAR_MM, 1.5 * self.step_mm)
 

@@ -1,0 +1,72 @@
+"""The optical fingertip: the seed's shapes by its own way and the improved one, and how often a contour closes; what a frame costs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from skinfab.bench.flatten import REPEATS, read_csv, write_csv
+from skinfab.bench.optical_contour import FRAMES, IMPROVED, PUBLISHED, RUNS, SEEDS, learned, measure_rates, measure_shapes
+from skinfab.bench.timing import one_processor
+from skinfab.progress import Progress, part_of, silent
+
+
+def run(folder: Path, *, repeats: int = REPEATS, seeds: int = SEEDS, runs: int = RUNS, progress: Progress = silent) -> dict[str, Any]:
+    """Measure, and write optical_shapes.csv, optical_contour.csv, .png and optical.txt, optical_reconstruction.png into `folder`.
+
+    Parameters
+    ----------
+    folder : path
+        Which is there.
+    repeats : int
+        Of what is timed.
+    seeds : int
+        For each point of the chart.
+    runs : int
+        Round each shape.
+    progress : Progress
+
+    Returns
+    -------
+    dict
+        "sentence", "notes" (what to know of the measurement), "shapes" and "contours".
+    """
+    from skinfab.bench.optical_chart import draw_rates, draw_reconstruction
+    from skinfab.files import atomic_write
+    from skinfab.fingertip.optical.simulator import paper_fingertip
+
+    notes = ["a simulated fingertip of 271 pins; sides are true / the seed's table 1 / found, mm"]
+    with one_processor() as alone:
+        notes += [] if alone else ["this system cannot keep a process on one processor"]
+        feel = learned(paper_fingertip())
+        write_csv(measure_shapes(feel, runs=runs, progress=part_of(progress, 0.05, 0.3)), folder / "optical_shapes.csv")
+        write_csv(measure_rates(feel, seeds=seeds, progress=part_of(progress, 0.3, 0.9)), folder / "optical_contour.csv")
+        draw_reconstruction(feel, folder / "optical_reconstruction.png")
+    # From here on only what the tables hold is used, so that chart and sentence cannot say anything else.
+    made, rates = read_csv(folder / "optical_shapes.csv"), read_csv(folder / "optical_contour.csv")
+    draw_rates(rates, folder / "optical_contour.png")
+    said = sentence(made, rates)
+    atomic_write(folder / "optical.txt", "\n".join([said, *notes]) + "\n")
+    return {"sentence": said, "notes": notes, "shapes": made, "contours": rates}
+
+
+def sentence(made: Sequence[Mapping[str, Any]], rates: Sequence[Mapping[str, Any]]) -> str:
+    """Published beside improved: every number in it comes from the tables."""
+    words = []
+    for name in (PUBLISHED, IMPROVED):
+        rows = [row for row in made if row["method"] == name]
+        right, runs = (sum(row[key] for row in rows) for key in ("right", "runs"))
+        off, side = ([row[key] for row in rows if row["right"]] for key in ("off_mm", "side_error_pc"))
+        worst = f", at most {max(side):.1f} % off in a side and {max(off):.2f} mm off the true edge on average" if off else ""
+        words.append(f"{name} close {right} of {runs} contours{worst}")
+    first = rates[0]
+    usual = {row["method"]: row for row in rates if (row["step_mm"], row["noise_mm"]) == (first["step_mm"], first["noise_mm"])}
+    far = [row for row in rates if row["method"] == IMPROVED]
+    worst_row = min(far, key=lambda row: row["rate"])
+    return (
+        f"On a simulated fingertip, {'; '.join(words)}; of {first['seeds']} circles in steps of {first['step_mm']:g} mm "
+        + ", ".join(f"{usual[name]['right']} close by {name}" for name in (PUBLISHED, FRAMES, IMPROVED))
+        + f"; the last is worst at steps of {worst_row['step_mm']:g} mm and noise of {worst_row['noise_mm']:g} mm: {worst_row['right']}. "
+        "The default is the last, in steps of 1 mm."
+    )

@@ -1,0 +1,37 @@
+"""`skinfab optical bench -o DIR`: the published way of following an edge beside the improved one, on a simulated fingertip."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+
+from skinfab.cli import steps
+
+
+def add_options(p: argparse.ArgumentParser) -> None:
+    """How many contours are followed, and where the results go."""
+    p.add_argument("--seeds", metavar="N", type=steps.counting, default=20, help="contours for each point of the chart (default: 20)")
+    p.add_argument("--runs", metavar="N", type=steps.counting, default=5, help="round each of the seed's shapes (default: 5)")
+    p.add_argument("-o", "--output", metavar="DIR", type=Path, required=True, help="folder for tables, charts and a sentence")
+    p.add_argument("--json", action="store_true", help="print one JSON object and nothing else")
+    p.set_defaults(run=run)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Measure, write, and say what came out."""
+    from skinfab.bench.optical import run as bench
+    from skinfab.progress import terminal_progress
+    from skinfab.staging import staged_folder
+
+    with staged_folder(args.output) as folder:
+        with terminal_progress(quiet=args.json) as progress:
+            found = bench(folder, seeds=args.seeds, runs=args.runs, progress=progress)
+        files = [str(args.output / file.name) for file in sorted(folder.iterdir())]
+    if args.json:
+        print(json.dumps({"simulated": True, "files": files, **found}, allow_nan=False))
+        return 0
+    print(found["sentence"])
+    steps.say(found["notes"])
+    print("wrote " + ", ".join(files))
+    return 0
