@@ -83,7 +83,7 @@ class Person:
                 if self.app.runner.job is None:
                     return
             assert time.monotonic() < end, f"waited {PATIENCE} s in vain; {[p.text for p in self.session.problems]}"
-            time.sleep(0.002)
+            time.sleep(0.005)
 
     def open(self, path: Path) -> None:
         self.app.files.open_path(path)

@@ -214,6 +214,7 @@ def test_closed_under_a_question_it_ends(start):
     while not person.app._closed:
         assert time.monotonic() < end
         person.app.root.update()
+        time.sleep(0.005)
     assert start.workers() == [] and not (person.app.desk.state / "gui.log").exists()
 
 
@@ -236,6 +237,7 @@ def test_an_interrupt_ends_it_without_a_question_and_keeps_the_work(start):
     while not person.app.interrupted:
         assert time.monotonic() < end
         person.app.root.update()
+        time.sleep(0.005)
     assert person.app.interrupted and start.workers() == [] and person.answers.asked == ["how_to_open cube.obj"]
     copies = list((person.app.desk.state / "autosave").glob("*.skin"))
     assert len(copies) == 1
@@ -250,6 +252,7 @@ def test_work_that_is_stopped_is_gone_within_half_a_second_and_can_be_asked_for_
     end = time.monotonic() + 0.3
     while time.monotonic() < end:
         person.app.root.update()
+        time.sleep(0.005)
     began = time.monotonic()
     bar.nametowidget("cancel").invoke()
     person.app.root.update()

@@ -88,6 +88,7 @@ def test_prediction_fit_and_strain_are_said(root, session, panel):
     while "worn +" not in words.get():
         assert time.monotonic() < end
         root.update()
+        time.sleep(0.005)
     assert "worn +0.00 %" in words.get(), "a plate is worn as flat as it was made"
     type_into(root, panel, "sensor.place.x", "95")
     assert "outside piece P1" in form.fit.get()
