@@ -42,6 +42,7 @@ from gui.scale import fitting, px
 from gui.state.autosave import Autosave, left_over
 from gui.state.derived import Derived
 from gui.state.describe import describe
+from gui.state.outdated import Outdated
 from gui.state.problem import Problem
 from gui.state.profiles import ProfileShelf
 from gui.state.session import Session, Topic
@@ -98,6 +99,7 @@ class App:
         colour_dialogs(root, self.theme)
         self.background = Background(root)
         self.session, self.derived, self.shelf = Session(), Derived(self.background), ProfileShelf()
+        Outdated(self.session)
         self.autosave = Autosave(state / "autosave", failed=self._autosave_failed)
         self.runner = Runner(root, changed=self._progress, log=self._log)
         self.desk = Desk(

@@ -1,11 +1,14 @@
-"""The problems list: one sentence a line, the worst first; a line that names a place shows it when it is clicked."""
+"""The problems list: one sentence a line, what is new first and notes last; a line that names a place shows it when it is clicked."""
 
 from __future__ import annotations
 
+import re
 import tkinter as tk
+from collections.abc import Sequence
 from tkinter import font, ttk
 
 from gui.scale import px
+from gui.state.problem import Problem
 from gui.state.selection import NOTHING
 from gui.state.session import Session
 from gui.theme import Theme
@@ -16,6 +19,9 @@ _ROWS = 3
 #: Width of the first column, what a list leaves free beside its text, and the least that lines are made for, px at 96 dots an inch.
 _KIND, _BESIDE, _LEAST = 70, 6, 100
 
+#: Parts of a sentence about sensors that do not fit which say nothing of these.
+_ADVICE = re.compile(r"move, turn or shrink (it|them)|and \d+ more")
+
 _MARKS = {"error": "error", "warning": "warning", "note": "note"}
 
 
@@ -25,6 +31,9 @@ class ProblemsPanel(ttk.Frame):
     def __init__(self, master: tk.Misc, session: Session, theme: Theme) -> None:
         super().__init__(master, name="problems", padding=(6, 2))
         self._session = session
+        #: What is listed, in that order, and when each line came: the how manieth time that the list changed.
+        self.shown: tuple[Problem, ...] = ()
+        self._came: dict[Problem, int] = {}
         self.title = tk.StringVar(self)
         ttk.Label(self, textvariable=self.title, style="Title.TLabel", name="title").pack(anchor="w")
         rows = ttk.Frame(self)
@@ -50,7 +59,10 @@ class ProblemsPanel(ttk.Frame):
 
     def _refresh(self) -> None:
         self.list.delete(*self.list.get_children())
-        problems = self._session.problems
+        latest = 1 + max(self._came.values(), default=0)
+        self._came = {p: self._came.get(p, latest) for p in self._session.problems}
+        # Only a few lines are seen at once: they must be those of what was just done.
+        problems = self.shown = tuple(sorted(once(self._session.problems), key=lambda p: (p.kind == "note", -self._came[p])))
         for k, problem in enumerate(problems):
             # A sentence ends with what to do: it must not be cut off.
             for j, line in enumerate(self._lines(problem.text)):
@@ -82,7 +94,32 @@ class ProblemsPanel(ttk.Frame):
     def _show(self, event: tk.Event) -> None:
         chosen = self.list.selection()
         place = int(chosen[0].partition(".")[0]) if chosen else -1
-        if 0 <= place < len(self._session.problems):
-            target = self._session.problems[place].target
+        if 0 <= place < len(self.shown):
+            target = self.shown[place].target
             if target != NOTHING:
                 self._session.select(target)
+
+
+def once(problems: Sequence[Problem]) -> list[Problem]:
+    """Without what is said twice, of which the line that shows a place stays: what does not fit has such a line already when it is refused.
+
+    Examples
+    --------
+    >>> from gui.state.selection import Target
+    >>> fit = [Problem(f"{id} is outside P1; move it", "sensors", target=Target(sensor=id)) for id in ("C1", "C2")]
+    >>> refused = Problem("C1 is outside P1; C2 is outside P1; move, turn or shrink them", "export")
+    >>> once([refused, *fit]) == fit, once([refused, fit[0]]) == [refused, fit[0]]
+    (True, True)
+    """
+    placed = {clause for problem in problems if problem.target != NOTHING for clause in _clauses(problem.text)}
+    kept: list[Problem] = []
+    for problem in problems:
+        if problem.target == NOTHING and (placed.issuperset(_clauses(problem.text)) or any(problem.text == other.text for other in kept)):
+            continue
+        kept.append(problem)
+    return kept
+
+
+def _clauses(text: str) -> set[str]:
+    """What a sentence says, without what it advises or leaves out."""
+    return {clause for clause in text.split("; ") if not _ADVICE.fullmatch(clause)} or {text}
