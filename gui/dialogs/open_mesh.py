@@ -49,8 +49,8 @@ class _OpenMesh(tk.Toplevel):
         body.pack(fill="both", expand=True)
         ttk.Label(body, text=facts.headline, style="Title.TLabel", wraplength=620).pack(anchor="w")
         self._ask_units(body, facts)
-        self._list(body, "What was found", facts.found)
-        self._list(body, "Always done", facts.cleaning_does)
+        self._list(body, "What reading it mends", facts.cleaning_does)
+        self._list(body, "What is left then" if facts.cleaning_does else "What was found", facts.found)
         if facts.repair_does:
             ttk.Checkbutton(body, text="Repair it:", variable=self._repair, name="repair").pack(anchor="w", pady=(8, 0))
             self._list(body, "", facts.repair_does)

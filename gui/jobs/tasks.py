@@ -37,14 +37,14 @@ class MeshFacts:
     file : str
         Its name.
     headline : str
-        Triangles, size, closed or open.
+        Triangles, parts, closed or open, as it is opened without repair.
     extent : float
         Largest extent, file units.
     units, unit_reason : str
         The unit it seems to be in, and why.
     unit_sure : bool
     found, cleaning_does, repair_does : tuple of str
-        Faults; what reading mends in any case; what repair would change.
+        Faults that are left by then; what reading mends in any case; what repair would change.
     usable : bool
         Without repair.
     """
@@ -81,16 +81,16 @@ def look_at_mesh(*, path: Path, progress: Progress) -> MeshFacts:
     would_do = repair(cleaned)[1] if after.open_edges or not after.usable else []
     extent = float(max(found.size_mm))
     guess = guess_units(extent)
-    shape = "closed" if found.closed else f"with {found.boundary_loops} open border{'' if found.boundary_loops == 1 else 's'}"
-    parts = "" if found.components == 1 else f" in {found.components} parts"
+    shape = "closed" if after.closed else f"with {after.boundary_loops} open border{'' if after.boundary_loops == 1 else 's'}"
+    parts = "" if after.components == 1 else f" in {after.components} parts"
     return MeshFacts(
         file=path.name,
-        headline=f"{path.name}: {found.faces} triangles{parts}, {shape}",
+        headline=f"{path.name}: {after.faces} triangles{parts}, {shape}",
         extent=extent,
         units=guess.units,
         unit_reason=guess.reason.split("; set --units")[0],
         unit_sure=guess.sure,
-        found=tuple(in_window(fault.sentence) for fault in found.faults),
+        found=tuple(in_window(fault.sentence) for fault in after.faults),
         cleaning_does=tuple(does),
         repair_does=tuple(would_do),
         usable=after.usable,

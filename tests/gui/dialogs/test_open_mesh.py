@@ -82,3 +82,21 @@ def test_a_long_list_is_cut_short_in_words(root, facts):
 def test_lengths_are_said_as_people_say_them(root, facts):
     _, said = asked(root, replace(facts, extent=90.0), lambda w: w.destroy())
     assert "mm: 90 mm long" in said and " m: 90 m long" in said and "e+" not in said
+
+
+def test_it_tells_of_what_will_be_opened(root, tmp_path):
+    """A cube cut open along all its edges in the file: reading joins them."""
+    from person import MESHES
+
+    lines = (MESHES / "cube.obj").read_text().splitlines()
+    points = [line for line in lines if line.startswith("v ")]
+    faces = [[int(word.split("/")[0]) for word in line.split()[1:]] for line in lines if line.startswith("f ")]
+    apart = [points[corner - 1] for face in faces for corner in face]
+    named = [f"f {3 * k + 1} {3 * k + 2} {3 * k + 3}" for k in range(len(faces))]
+    (tmp_path / "apart.obj").write_text("\n".join([*apart, *named]) + "\n")
+    facts = look_at_mesh(path=tmp_path / "apart.obj", progress=silent)
+    assert facts.headline == f"apart.obj: {len(faces)} triangles, closed"
+    assert not any("open" in sentence for sentence in facts.found) and not facts.repair_does
+    assert any("joined" in sentence for sentence in facts.cleaning_does)
+    _, said = asked(root, facts, lambda window: window.destroy())
+    assert "What reading it mends" in said and "joined" in said and "border" not in said
