@@ -174,9 +174,10 @@ class Pins:
         for _ in range(_ROUNDS):
             pins = cls(rest, some[0].shape, level)
             found = [pins.match(each) for each in tips]
-            missing = np.mean([each.missing for each in found], axis=0)
-            rest = (pins.rest + np.mean([each.moved for each in found], axis=0))[missing < 1 - PIN_KEPT]
-        return cls(rest, some[0].shape, level)
+            rest = pins.rest + np.mean([each.moved for each in found], axis=0)
+        # Only now: by the first image's places, which are moved themselves, a pin may be missed that its usual place finds.
+        missing = np.mean([each.missing for each in found], axis=0)
+        return cls(rest[missing < 1 - PIN_KEPT], some[0].shape, level)
 
     @cached_property
     def _near(self) -> tuple[IntArray, FloatArray]:
@@ -219,14 +220,15 @@ class Pins:
             at = np.rint(tips).astype(np.intp)
             owner = self._owner[at[:, 1], at[:, 0]]
             self._give(tips, np.arange(len(tips)), owner, self.rest[owner], reach, moved, missing, free)
-        if missing.any() and not missing.all():
+        left = -1
+        while missing.any() and not missing.all() and free.sum() != left:
+            left = int(free.sum())
             self._fill(near, moved, missing)
-            lost, left = np.flatnonzero(missing), np.flatnonzero(free)
-            if len(left):
-                off = np.linalg.norm(self.rest[lost, None] + moved[lost, None] - tips[left], axis=2)
-                nearest = off.argmin(axis=0)
-                owner = lost[nearest]
-                self._give(tips, left, owner, (self.rest + moved)[owner], reach, moved, missing, free)
+            lost, which = np.flatnonzero(missing), np.flatnonzero(free)
+            if len(which):
+                expected = self.rest + moved
+                owner = lost[np.linalg.norm(expected[lost, None] - tips[which], axis=2).argmin(axis=0)]
+                self._give(tips, which, owner, expected[owner], reach, moved, missing, free)
         return Tracked(moved, missing, int(free.sum()))
 
     def _give(

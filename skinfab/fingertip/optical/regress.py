@@ -1,8 +1,8 @@
 """From pins to the edge: offset, angle and depth by kernel ridge regression on the principal components of how the pins moved.
 
-Each component is divided by the root of its standard deviation: halfway between raw components, of which the first few drown the
-rest, and whitened ones, of which the last are noise. The angle is learned as cosine and sine, so it has no seam. Width of the kernel
-and ridge are chosen on whole groups that are held out for it. (Saunders, Gammerman and Vovk 1998.)
+The components keep their size: whitened, the last ones' noise would count as much as the first ones' movement. The angle is learned as
+cosine and sine, so it has no seam. Width of the kernel and ridge are chosen on whole groups that are held out for it. (Saunders,
+Gammerman and Vovk 1998.)
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
 #: Widths (for features of a mean square of 1) and ridges that are tried.
-GAMMAS, RIDGES = (0.3, 0.6, 1.2), (3e-3, 1e-2, 3e-2)
+GAMMAS, RIDGES = (0.3, 0.6, 1.2, 2.4, 4.8), (3e-3, 1e-2, 3e-2)
 #: How the image that is judged differs from all that was learned is measured by what this part of held-out images reach.
 _USUAL = 0.99
 #: Groups that settings are chosen on: a fifth.
@@ -239,8 +239,7 @@ def _components(examples: Examples) -> tuple[FloatArray, FloatArray]:
     if not spread[0] > 0:
         raise InputError("the pins are in the same places in all images; give images of different contacts")
     kept = spread > 1e-9 * spread[0]
-    basis = vectors[:, kept] * spread[kept] ** -0.25
-    return mean, basis / math.sqrt(np.sqrt(spread[kept]).sum())
+    return mean, vectors[:, kept] / math.sqrt(spread[kept].sum())
 
 
 def _outside(moved: FloatArray, Z: FloatArray, basis: FloatArray) -> FloatArray:
