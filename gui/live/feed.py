@@ -36,8 +36,9 @@ WAIT_S = 0.05
 WAITING = 200_000
 #: Rows of a log that are shown at once where it is sought, s.
 SHOWN_S = 120.0
-#: Frames a second are counted over so long, s.
-_RATE_S = 2.0
+#: Frames a second are counted over so long, s, and are said from so long on; what a source had kept ready comes in a burst in the
+#: first of its time, s, which does not count.
+_RATE_S, _SAID_FROM_S, _BURST_S = 2.0, 1.0, 0.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,7 +85,7 @@ class Status:
         Known once it runs.
     counts : Counts
     rate_hz : float
-        Frames a second that came lately.
+        Frames a second that came lately; NaN while they are still being counted.
     age_s : float
         Since the last frame came; infinite where none did.
     gone_s : float
@@ -97,7 +98,7 @@ class Status:
     sentence: str = ""
     stream: Stream | None = None
     counts: Counts = field(default_factory=Counts)
-    rate_hz: float = 0.0
+    rate_hz: float = math.nan
     age_s: float = math.inf
     gone_s: float = math.nan
     outages_s: tuple[float, ...] = ()
@@ -144,7 +145,7 @@ class Feed:
         self._touched, self._reading = dict[str, float](), cast("Reading | None", None)
         self._anew, self._newest, self._came = False, cast("Frame | None", None), -math.inf
         self._given: deque[tuple[float, int]] = deque()
-        self._frames = 0
+        self._frames, self._first = 0, math.inf
         self._recorder: Recorder | None = None
         self._recorded_by: Recorder | None = None
         #: How the recording goes, and why it ended before it was to; None and empty where there is none.
@@ -189,17 +190,23 @@ class Feed:
     def status(self) -> Status:
         """How it is now."""
         now, source = time.monotonic(), self._source
-        self._given.append((now, self._frames))
-        while now - self._given[0][0] > _RATE_S and len(self._given) > 2:
-            self._given.popleft()
-        since, frames = self._given[0]
-        rate = (self._frames - frames) / (now - since) if now > since else 0.0
+        rate = self._rate(now)
         if source is None or self.watch is None:
             return Status(self._state, self._sentence)
         outages = getattr(source, "outages", ())
         gone = next((time.time() - each.began for each in outages if each.ended is None), math.nan)
         back = tuple(each.ended - each.began for each in outages if each.ended is not None)
         return Status(self._state, self._sentence, self.watch.stream, source.counts, rate, now - self._came, gone, back)
+
+    def _rate(self, now: float) -> float:
+        """Frames a second that came lately."""
+        if now - self._first < _BURST_S:
+            return math.nan
+        self._given.append((now, self._frames))
+        while now - self._given[0][0] > _RATE_S and len(self._given) > 2:
+            self._given.popleft()
+        since, frames = self._given[0]
+        return (self._frames - frames) / (now - since) if now - since >= _SAID_FROM_S else math.nan
 
     def calibrate(self, calibration: SensorCalibration | None, channel: str = "") -> None:
         """Give out angles.
@@ -322,6 +329,7 @@ class Feed:
             self._touched, self._reading = touched, reading
             self._pending.append((at, row))
             self._newest, self._came = frame, time.monotonic()
+            self._first = min(self._first, self._came)
             self._frames += 1
 
     def _jump(self, player: Player, to: int) -> None:

@@ -210,7 +210,9 @@ class Plots(ttk.Frame):
         assert self._stream is not None
         theme, names, c = self._theme, self._stream.names, len(shown)
         plain, touched = Ink(theme.view, theme.accent), Ink(_mixed(theme.view, theme.select, 0.18), theme.select)
-        inks = [touched if names[k] in now.touched else plain for k in shown]
+        # One that has no reading looks neither touched nor well.
+        lost, valid = Ink(_mixed(theme.view, theme.faint, 0.25), theme.faint), None if now.newest is None else now.newest.valid
+        inks = [lost if valid is not None and not valid[k] else touched if names[k] in now.touched else plain for k in shown]
         low, high = self._scales.low[columns], self._scales.high[columns]
         options = {"grid": grid, "grid_colour": theme.border, "width_px": 1.3 * self._dpi}
         first = Spans(found.low[:, :c], found.high[:, :c])
@@ -268,7 +270,7 @@ class Plots(ttk.Frame):
         assert self._stream is not None
         channel, frame, theme = self._stream.channels[k], now.newest, self._theme
         if frame is None or not frame.valid[k]:
-            return "no reading" if frame is not None else "", theme.warning
+            return "no reading" if frame is not None else "", theme.error  # the colour of warnings is nearly that of a touch
         value = f"{frame.values[k]:.4g} {channel.unit}".rstrip()
         if now.silent:
             return value, theme.faint

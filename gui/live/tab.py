@@ -6,10 +6,12 @@ import math
 import time
 import tkinter as tk
 from collections.abc import Callable
+from dataclasses import dataclass, replace
 from pathlib import Path
 from tkinter import ttk
 
 from calibration.strain.document import SensorCalibration
+from calibration.strain.reading import Reading
 from gui.live.angle_row import AngleRow
 from gui.live.channels import label, sensors_of, watched
 from gui.live.choices import Choice, LogChoice, PortChoice
@@ -45,6 +47,14 @@ LOGS = [("logs", "*.csv *.mcap *.bag *.db3 *.frames"), ("all files", "*")]
 CALIBRATIONS = [("calibrations", "*.json"), ("all files", "*")]
 
 Kinds = list[tuple[str, str]]
+
+
+@dataclass(frozen=True, eq=False)
+class _Shown:
+    """A moment of the source."""
+
+    now: Now
+    reading: Reading | None
 
 
 class LiveTab(ttk.Frame):
@@ -86,7 +96,9 @@ class LiveTab(ttk.Frame):
         self._stream: Stream | None = None
         self._sensors: tuple[str, ...] = ()
         self._newest: Frame | None = None
-        self._held: float | None = None
+        #: What is shown, and what stands still in its place while it is paused.
+        self._last: _Shown | None = None
+        self._held: _Shown | None = None
         self._record_name, self._said_at, self._timer = "", 0.0, ""
         self._status: Status = Status("ended")
         self.connect = ConnectRow(self, ask_log=lambda: ask_open("Open a log", LOGS), connect=self.choose, complain=self._complain)
@@ -124,7 +136,7 @@ class LiveTab(ttk.Frame):
         before, self.feed = self.feed, None
         if before is not None:
             before.close()
-        self._stream, self._newest, self._held = None, None, None
+        self._stream, self._newest, self._last, self._held = None, None, None, None
         self.row.paused.set(False)
         self.row.ended("")
         if before is not None:
@@ -227,17 +239,18 @@ class LiveTab(ttk.Frame):
             self.ring.add(news.time, news.rows)
         self._newest = news.newest
         quiet = silent(status, paused=self._standing(feed) != "")
-        touched = {} if quiet else news.touched
+        touched = {} if quiet else _read(news.touched, news.newest, stream)
         self.lights.show(lights_of(touched, stream.names, self._sensors))
-        if not self.plots.winfo_viewable():
-            return
         last = float(self.ring.time[-1]) if len(self.ring) else 0.0
         angle = math.nan if news.reading is None else news.reading.angle
-        at = last if self._held is None else self._held
-        self.plots.draw(self.ring, Now(at, self.row.range_s, news.newest, touched, angle, quiet))
+        self._last = _Shown(Now(last, self.row.range_s, news.newest, touched, angle, quiet), news.reading)
+        if not self.plots.winfo_viewable():
+            return
+        shown = self._last if self._held is None else self._held
+        self.plots.draw(self.ring, replace(shown.now, range_s=self.row.range_s))
         if feed.player is not None:
             self.log_row.follow()
-        self.angle.show(news.reading, silent=quiet)
+        self.angle.show(shown.reading, silent=shown.now.silent)
 
     def _say(self, feed: Feed, status: Status) -> None:
         opening = "" if isinstance(feed.choice, PortChoice) else f"opening {feed.choice.name}"
@@ -324,8 +337,8 @@ class LiveTab(ttk.Frame):
             self._name_channels()
 
     def _pause(self, paused: bool) -> None:
-        """The plots stand still; reading and recording go on."""
-        self._held = float(self.ring.time[-1]) if paused and len(self.ring) else None
+        """Curves, colours and readings stand still; what comes is kept, recorded and lit in the views all the same."""
+        self._held = self._last if paused else None
 
     def _toggle(self) -> None:
         if self.log_row.player is not None:
@@ -354,3 +367,10 @@ class LiveTab(ttk.Frame):
             self._stop()
             if self.feed is not None:
                 self.feed.close()
+
+
+def _read(touched: dict[str, float], newest: Frame | None, stream: Stream) -> dict[str, float]:
+    """Touched channels without those that have no reading now: whether they are touched is not known."""
+    if newest is None:
+        return touched
+    return {name: change for name, change in touched.items() if newest.valid[stream.index(name)]}

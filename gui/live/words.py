@@ -79,7 +79,7 @@ def _stream(status: Status, pace: str) -> str:
     nominal = f" of {stream.rate_hz:.4g}" if stream.rate_hz else ""
     # As it is called, unless that says so already.
     made = ", simulated" if stream.simulated and "simulated" not in stream.name else ""
-    lately = pace or f"{status.rate_hz:.0f} Hz{nominal}"
+    lately = pace or ("counting frames" if math.isnan(status.rate_hz) else f"{status.rate_hz:.0f} Hz{nominal}")
     return f"{stream.name}{made}: {many} channel{'s' * (many != 1)}, {lately}"
 
 

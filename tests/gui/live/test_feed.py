@@ -1,6 +1,8 @@
 """Sources read beside the window: over a pseudo-terminal, from logs, from simulators."""
 
+import collections
 import itertools
+import math
 import threading
 import time
 from pathlib import Path
@@ -61,7 +63,7 @@ def test_frames_of_a_port_come_in_order_and_its_thread_ends(feeds):
         until(lambda: rows.extend(feed.take().rows[:, 0].tolist()) or len(rows) > 100)
         assert np.array_equal(np.diff(rows), np.ones(len(rows) - 1))
         status = feed.status()
-        assert status.stream == STREAM and status.rate_hz > 0 and np.isfinite(status.age_s) and np.isnan(status.gone_s)
+        assert status.stream == STREAM and np.isnan(status.rate_hz) and np.isfinite(status.age_s) and np.isnan(status.gone_s)
         feed.close()
         assert feed.join(1.0) and feed.status().state == "ended" and feed.status().sentence == ""
         assert not [t for t in threading.enumerate() if t.name == f"reader of {device.path}"]
@@ -174,3 +176,17 @@ def test_a_log_that_is_sought_shows_what_was_before_and_knows_its_lights(feeds):
     assert feed.status().state == "running" and feed.player.paused
     feed.player.seek(3.0)
     until(lambda: feed.take().touched == {})
+
+
+def test_a_rate_is_said_after_a_second_and_a_burst_does_not_count():
+    """What a device had kept ready comes at once: 200 frames, and then 100 a second."""
+    feed = Feed.__new__(Feed)
+    feed._given, feed._frames, feed._first = collections.deque(), 0, math.inf
+    said = {}
+    assert math.isnan(feed._rate(50.0))
+    feed._first = 50.0
+    for k in range(1, 91):
+        feed._frames = 200 + round(100 * k / 30)
+        said[k] = feed._rate(50.0 + k / 30)
+    assert all(math.isnan(said[k]) for k in range(1, 45)), "half a second of burst and one of counting"
+    assert all(abs(said[k] - 100) < 2 for k in range(46, 91))

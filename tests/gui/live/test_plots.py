@@ -82,7 +82,7 @@ def test_touched_invalid_saturated_and_silent_are_told_apart(plots):
     draw(plots, touched={"B": -0.16})
     assert words(plots, "value1") == "touched, -16 %" and len(painted(plots, LIGHT.select)[0])
     draws = [
-        ({"newest": frame([0.5, 5, 1], valid=False)}, "no reading", LIGHT.warning),
+        ({"newest": frame([0.5, 5, 1], valid=False)}, "no reading", LIGHT.error),
         ({"newest": frame([0.5, 5, 1], saturated=True)}, "at its end", LIGHT.error),
         ({"silent": True}, "0.5 V", LIGHT.faint),
     ]
@@ -90,6 +90,12 @@ def test_touched_invalid_saturated_and_silent_are_told_apart(plots):
         plots._words_at = 0.0
         draw(plots, **given)
         assert words(plots, "value0") == says and plots.canvas.itemcget("value0", "fill") == colour
+
+
+def test_a_lost_reading_does_not_look_like_a_touch(plots):
+    draw(plots, touched={"B": -0.16}, newest=frame([0.5, 5, 1], valid=False))
+    assert words(plots, "value1") == "no reading" and not len(painted(plots, LIGHT.select, 60)[0])
+    assert not len(painted(plots, LIGHT.accent, 12)[0]), "nor like one that is well"
 
 
 def test_a_click_chooses_and_a_double_click_shows_alone_and_all_again(plots):

@@ -261,9 +261,16 @@ def test_paused_the_plots_stand_still_and_reading_goes_on(window):
     tab.plots.canvas.event_generate("<space>")
     pressed = len(tab.ring)
     window.until(lambda: len(tab.ring) > pressed + 2)
+    window.wait(0.3)  # values are written five times a second
     ticks, count = tick_places(tab), len(tab.ring)
+    held, values = tab._held.now, [tab.plots.canvas.itemcget(f"value{k}", "text") for k in range(2)]
     window.until(lambda: len(tab.ring) > count + 20)
+    window.wait(0.3)
     assert tick_places(tab) == ticks
+    assert (
+        values == [tab.plots.canvas.itemcget(f"value{k}", "text") for k in range(2)]
+        and tab._last.now.newest.sequence > held.newest.sequence
+    )
     tab.row.hold.invoke()
     window.until(lambda: tick_places(tab) != ticks)
 

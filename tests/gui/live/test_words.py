@@ -66,3 +66,7 @@ def test_what_is_simulated_or_read_is_no_device_to_look_at_before_its_first_fram
     words = words_of("simulated hand", status(age_s=math.inf), opening="opening simulated hand")
     assert words.kind == "warning" and "waiting for its first frame" in words.text and "device" not in words.text
     assert words_of("port", status(age_s=math.inf)).kind == "error"
+
+
+def test_no_rate_is_said_while_it_is_counted():
+    assert words_of("port", status(rate_hz=math.nan)).text == "skin: 2 channels, counting frames"
