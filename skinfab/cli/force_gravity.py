@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from skinfab.fingertip.force.poses import Poses
 
 _RUN = ("gravity.csv", "gravity.png", "result.json")
+#: From the hand's origin to what it holds.
+_HAND_MM = 300.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,12 +138,15 @@ def _one(path: Path, args: argparse.Namespace) -> tuple[Found, list[str]]:
     from skinfab.fingertip.force.logs import read_wrench
     from skinfab.fingertip.force.mass import fit_mass
     from skinfab.fingertip.force.poses import poses_of
+    from skinfab.fingertip.force.wrench import require_nmm
 
     log = read_wrench(path)
     notes = list(log.notes)
     try:
         poses = poses_of(log)
         notes += poses.notes
+        if not log.units_said:
+            require_nmm(poses.force, poses.moment, reach_mm=_HAND_MM, least_force=0.0, where=log.name)
         centre = centre_of_gravity(poses.force, poses.moment, poses.covariance)
         centre = replace(centre, covariance=centre.covariance + args.place_sd**2 * np.eye(3))
         require_certain(centre, poses.force, worst_sd_mm=args.max_sd)

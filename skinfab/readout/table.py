@@ -10,8 +10,8 @@ import csv
 import hashlib
 import math
 import re
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from datetime import datetime
 from pathlib import Path
 
@@ -54,6 +54,8 @@ class Table:
         From the lines before the headings.
     notes : tuple of str
         What was left out, a sentence each.
+    units : dict of str
+        Of the columns that say theirs, as `skinfab.readout.logs.log.read_log_table` fills it.
     """
 
     file: str
@@ -62,6 +64,7 @@ class Table:
     columns: dict[str, FloatArray]
     remarks: dict[str, str]
     notes: tuple[str, ...] = ()
+    units: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def simulated(self) -> bool:

@@ -2,6 +2,7 @@
 
 import csv
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -9,6 +10,7 @@ import numpy as np
 import pytest
 
 from skinfab.cli.main import main
+from skinfab.fingertip.force.gravity_simulator import PAPER_TRUTH, hold
 from skinfab.fingertip.force.logs import write_wrench
 from skinfab.fingertip.force.simulator import MATERIALS, slide
 
@@ -77,6 +79,17 @@ def test_gravity_from_logs_to_a_table(tmp_path: Path, capsys: pytest.CaptureFixt
         assert ours < 1.5 and each["mass_kg"] == pytest.approx(0.17, abs=5 * each["mass_sd_kg"])
         assert each["worst_sd_mm"] >= 0.5 and each["lines_meet"] and theirs < 8
     assert sorted(p.name for p in (tmp_path / "out").iterdir()) == ["gravity.csv", "gravity.png", "result.json"]
+
+
+def test_gravity_of_moments_in_n_m_is_refused_unless_their_unit_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    log = hold(seed=1).log
+    write_wrench(replace(log, moment=log.moment / 1000), tmp_path / "a.csv")
+    assert main(["force", "run", "gravity", str(tmp_path / "a.csv"), "-o", str(tmp_path / "out")]) == 1
+    assert "so the moments are in N m" in capsys.readouterr().err
+    text = (tmp_path / "a.csv").read_text().replace("Mx,My,Mz", "Mx (N m),My (N m),Mz (N m)")
+    (tmp_path / "b.csv").write_text(text)
+    (found,) = said(capsys, "run", "gravity", tmp_path / "b.csv", "-o", tmp_path / "out")["objects"]
+    assert np.linalg.norm(np.subtract(found["centre_mm"], PAPER_TRUTH[0])) < 1.5
 
 
 def test_poor_poses_are_refused_and_nothing_is_written(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

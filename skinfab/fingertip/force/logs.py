@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from skinfab.errors import InputError
 from skinfab.files import atomic_write
-from skinfab.fingertip.force.wrench import WRENCH
+from skinfab.fingertip.force.wrench import WRENCH, wrench_columns
 from skinfab.readout.logs.log import read_log_table
 
 FloatArray = NDArray[np.float64]
@@ -43,6 +43,8 @@ class WrenchLog:
     sha256 : str
         Of the file; empty where there is none.
     notes : tuple of str
+    units_said : bool
+        Does the log name the units of its moments? Where it does not, they are taken for N mm.
     """
 
     name: str
@@ -55,6 +57,7 @@ class WrenchLog:
     simulated: bool = False
     sha256: str = ""
     notes: tuple[str, ...] = ()
+    units_said: bool = False
 
     def __len__(self) -> int:
         return len(self.time)
@@ -66,28 +69,25 @@ class WrenchLog:
 
 
 def read_wrench(path: str | Path) -> WrenchLog:
-    """Read a log; rows in which one of the six components is missing or saturated are left out, and counted in a note.
+    """Read a log, in the units that it declares; rows in which a component is missing or saturated are left out, and counted in a note.
 
     Raises
     ------
     InputError
-        As `skinfab.readout.logs.log.read_log`; or a component has no column, or no row has all of them.
+        As `skinfab.readout.logs.log.read_log` and `wrench_columns`; or no row has all of the components.
     """
     path = Path(path)
     table, said = read_log_table(path)
-    if missing := [name for name in WRENCH if name not in table.columns]:
-        raise InputError(
-            f"{path} has no column {', '.join(missing)}; call the forces Fx, Fy, Fz (N) and the moments Mx, My, Mz (N mm); "
-            f"there are {', '.join(table.columns) or 'none'}"
-        )
-    wrench = np.column_stack([table.columns[name] for name in WRENCH])
+    used = wrench_columns(table.columns, table.units, where=str(path))
+    wrench = np.column_stack([scale * table.columns[name] for name, scale in used])
     whole = np.asarray(np.isfinite(wrench).all(axis=1))
     if not whole.any():
         raise InputError(f"{path} has no row in which all of {', '.join(WRENCH)} are numbers; look at the sensor")
     notes = [*said, *table.notes]
     if left_out := int((~whole).sum()):
         notes.append(f"{path.name}: {left_out:,} of {len(whole):,} rows lack a component and were left out")
-    others = {name: column[whole] for name, column in table.columns.items() if name not in WRENCH}
+    names = [name for name, _ in used]
+    others = {name: column[whole] for name, column in table.columns.items() if name not in names}
     return WrenchLog(
         path.name,
         table.time[whole],
@@ -99,6 +99,7 @@ def read_wrench(path: str | Path) -> WrenchLog:
         table.simulated,
         table.sha256,
         tuple(notes),
+        all(name in table.units for name in names[3:]),
     )
 
 

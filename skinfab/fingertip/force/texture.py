@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from skinfab.errors import InputError
 from skinfab.fingertip.force.contact import LEAST_FORCE_N, Hemisphere, locate
 from skinfab.fingertip.force.logs import WrenchLog
-from skinfab.fingertip.force.wrench import SensorNoise
+from skinfab.fingertip.force.wrench import RADIUS_MM, SensorNoise, require_nmm
 from skinfab.readout.filters import Lowpass
 
 FloatArray = NDArray[np.float64]
@@ -77,7 +77,7 @@ def sliding_part(log: WrenchLog, surface: Hemisphere | None = None) -> Slide:
     Raises
     ------
     InputError
-        The log is too short or sampled too slowly, nothing is touched, or nothing slides.
+        The log is too short or sampled too slowly, nothing is touched, nothing slides, or moments seem to be in N m.
     """
     rate = log.rate_hz
     if not rate >= 2 * TOP_HZ * 1.25:
@@ -96,6 +96,8 @@ def sliding_part(log: WrenchLog, surface: Hemisphere | None = None) -> Slide:
     sliding = _slides(inclination, touching, round(_SMOOTH_S * rate))
     if not sliding.any():
         raise InputError(f"{log.name}: there is no tangential force; pull the material along")
+    if not log.units_said:
+        require_nmm(slow[touching], low.zero_phase(moment)[touching], reach_mm=RADIUS_MM, least_force=LEAST_FORCE_N, where=log.name)
     start, end = _longest(sliding)
     edge = round(_EDGE_S * rate)
     start, end = start + edge, end - edge

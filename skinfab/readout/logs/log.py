@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import re
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -120,7 +120,8 @@ def read_log_table(path: str | Path) -> tuple[Table, tuple[str, ...]]:
     except OSError as fault:
         raise InputError(f"{path}: {fault.strerror or fault}; give a log") from fault
     if foreign:
-        return read_table(path), ()
+        table = read_table(path)
+        return replace(table, units=_said(dict(zip(table.columns, map(_unit, table.columns), strict=True)))), ()
     log = read_log(path)
     return table_of(log), log.notes
 
@@ -145,7 +146,13 @@ def table_of(log: Log) -> Table:
         with np.errstate(over="ignore"):  # of a damaged file; infinite is no number to a calibration either
             columns[channel.name] = np.degrees(readings) if channel.unit == "rad" else readings
     time = made.device_time[timed]
-    return Table(log.file, log.sha256, time - time[0], columns, {"simulated": "true"} if made.stream.simulated else {})
+    units = _said({channel.name: "deg" if channel.unit == "rad" else channel.unit for channel in made.stream.channels})
+    remarks = {"simulated": "true"} if made.stream.simulated else {}
+    return Table(log.file, log.sha256, time - time[0], columns, remarks, units=units)
+
+
+def _said(units: dict[str, str]) -> dict[str, str]:
+    return {name: unit for name, unit in units.items() if unit}
 
 
 Read = Callable[[Path], tuple[Recording, list[str]]]

@@ -12,8 +12,8 @@ from skinfab.errors import InputError
 from skinfab.fingertip.force.labels import require_labels, with_labels
 from skinfab.fingertip.force.logs import WrenchLog, read_wrench, write_wrench
 from skinfab.fingertip.force.simulator import MATERIALS, slide
-from skinfab.fingertip.force.wrench import force_stream
-from skinfab.readout.frame import Recording
+from skinfab.fingertip.force.wrench import force_stream, require_nmm
+from skinfab.readout.frame import Channel, Recording, Stream
 from skinfab.readout.logs.log import write_log
 
 
@@ -55,6 +55,37 @@ def test_what_is_no_log_of_the_sensor_is_refused(tmp_path: Path, text: str, says
     (tmp_path / "a.csv").write_text(text)
     with pytest.raises(InputError, match=says):
         read_wrench(tmp_path / "a.csv")
+
+
+def test_declared_units_are_converted(tmp_path: Path) -> None:
+    (tmp_path / "a.csv").write_text("time,Fx (mN),Fy (N),Fz,Mx [N m],My (N.mm),Mz (mNm)\n0,1000,2,3,0.004,5,6\n")
+    read = read_wrench(tmp_path / "a.csv")
+    assert read.force.tolist() == [[1, 2, 3]] and read.moment.tolist() == [[4, 5, 6]] and read.units_said
+    (tmp_path / "b.csv").write_text("time,Fx,Fy,Fz,Mx (lbf in),My,Mz\n0,1,1,1,1,1,1\n")
+    with pytest.raises(InputError, match=r"Mx \(lbf in\) is in lbf in, which is not known"):
+        read_wrench(tmp_path / "b.csv")
+
+
+def test_a_ros_wrench_is_read(tmp_path: Path) -> None:
+    parts = [(f".{vector}.{axis}", unit) for vector, unit in (("force", "N"), ("torque", "N m")) for axis in "xyz"]
+    one = tuple(Channel("ft" + name, unit) for name, unit in parts)
+    values = np.arange(12.0).reshape(2, 6)
+    write_log(Recording.of_values(Stream("bag", one, 100.0), values, device_time=np.arange(2) / 100), tmp_path / "a.mcap")
+    read = read_wrench(tmp_path / "a.mcap")
+    assert read.force == pytest.approx(values[:, :3]) and read.moment == pytest.approx(1000 * values[:, 3:]) and not read.others
+    both = (*one, *(Channel("other" + name, unit) for name, unit in parts))
+    made = Recording.of_values(Stream("bag", both, 100.0), np.ones((2, 12)), device_time=np.arange(2) / 100)
+    write_log(made, tmp_path / "b.mcap")
+    with pytest.raises(InputError, match=r"ft.force.x and other.force.x are one component of two sensors"):
+        read_wrench(tmp_path / "b.mcap")
+
+
+def test_moments_in_n_m_that_nobody_declared_are_refused() -> None:
+    log = slide(MATERIALS["towel"], seed=1)
+    require_nmm(log.force, log.moment, reach_mm=20.0, least_force=0.3, where="a.csv")
+    with pytest.raises(InputError, match="the moments are in N m"):
+        require_nmm(log.force, log.moment / 1000, reach_mm=20.0, least_force=0.3, where="a.csv")
+    require_nmm(np.zeros((5, 3)), np.zeros((5, 3)), reach_mm=20.0, least_force=0.3, where="a.csv")  # nothing touched: nothing known
 
 
 LOG = WrenchLog("a.csv", np.zeros(1), np.zeros((1, 3)), np.zeros((1, 3)))

@@ -122,3 +122,10 @@ def test_a_spectrum_longer_than_the_slide_is_refused() -> None:
     with pytest.raises(InputError, match="slide for longer"):
         published_features(short)
     assert np.isfinite(band_features(short)).all()  # bands take what there is
+
+
+def test_moments_in_n_m_are_refused_unless_the_log_says_so() -> None:
+    log = slide(MATERIALS["towel"], seed=5)
+    with pytest.raises(InputError, match="the moments are in N m"):
+        sliding_part(replace(log, moment=log.moment / 1000))
+    assert sliding_part(replace(log, units_said=True)).rate_hz == pytest.approx(200)
