@@ -13,12 +13,12 @@ from skinfab.progress import Progress, part_of, silent
 
 
 def run(folder: Path, *, repeats: int = REPEATS, seeds: int = SEEDS, runs: int = RUNS, progress: Progress = silent) -> dict[str, Any]:
-    """Measure, and write optical_shapes.csv, optical_contour.csv, .png and optical.txt, optical_reconstruction.png into `folder`.
+    """Measure, and write optical_shapes.csv, optical_contour.csv and .png, optical_reconstruction.png, the frames' files, and optical.txt.
 
     Parameters
     ----------
     folder : path
-        Which is there.
+        To write into, which is there.
     repeats : int
         Of what is timed.
     seeds : int
@@ -30,9 +30,10 @@ def run(folder: Path, *, repeats: int = REPEATS, seeds: int = SEEDS, runs: int =
     Returns
     -------
     dict
-        "sentence", "notes" (what to know of the measurement), "shapes" and "contours".
+        "sentence", "notes" (what to know of the measurement), "shapes", "contours" and "frames".
     """
     from skinfab.bench.optical_chart import draw_rates, draw_reconstruction
+    from skinfab.bench.optical_frame import frame
     from skinfab.files import atomic_write
     from skinfab.fingertip.optical.simulator import paper_fingertip
 
@@ -47,8 +48,10 @@ def run(folder: Path, *, repeats: int = REPEATS, seeds: int = SEEDS, runs: int =
     made, rates = read_csv(folder / "optical_shapes.csv"), read_csv(folder / "optical_contour.csv")
     draw_rates(rates, folder / "optical_contour.png")
     said = sentence(made, rates)
+    cost = frame(folder, repeats=repeats, progress=part_of(progress, 0.9, 1.0))
+    said, notes = f"{said} {cost['sentence']}", [*notes, *cost["notes"]]
     atomic_write(folder / "optical.txt", "\n".join([said, *notes]) + "\n")
-    return {"sentence": said, "notes": notes, "shapes": made, "contours": rates}
+    return {"sentence": said, "notes": notes, "shapes": made, "contours": rates, "frames": cost["rows"]}
 
 
 def sentence(made: Sequence[Mapping[str, Any]], rates: Sequence[Mapping[str, Any]]) -> str:

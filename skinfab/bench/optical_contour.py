@@ -21,7 +21,7 @@ PUBLISHED, FRAMES, IMPROVED = "merged pins", "pose, each frame alone", "pose, me
 #: Images that the pose is learned from, runs round each shape, and seeds for each point of the chart.
 IMAGES, RUNS, SEEDS = 700, 5, 20
 #: Steps, mm, at the fingertip's own noise; and noise of the tips, mm, at the seed's step.
-STEPS_MM, NOISES_MM = (1.0, 2.0, 4.0), (0.1, 0.2, 0.3)
+STEPS_MM, NOISES_MM = (1.0, 4.0, 8.0), (0.1, 0.2, 0.3)
 
 Follow = Callable[[Rig], Trace]
 
@@ -136,16 +136,18 @@ def measure_rates(
     steps_mm: Sequence[float] = STEPS_MM,
     noises_mm: Sequence[float] = NOISES_MM,
     seeds: int = SEEDS,
+    images: int = IMAGES,
     progress: Progress = silent,
 ) -> list[RateRow]:
-    """How often the circle closes."""
+    """How often the circle closes; where tips are noisier, the pose is learned from images with that noise."""
     tip, shape = paper_fingertip(), shapes()[-1]
     own = tip.errors.pin_mm
     points = [(step, own) for step in steps_mm] + [(steps_mm[0], noise) for noise in noises_mm]
     rows = []
     for k, (step, noise) in enumerate(points):
         noisy = replace(tip, errors=replace(tip.errors, pin_mm=noise))
-        for j, (name, follow) in enumerate(ways(feel, step_mm=step).items()):
+        felt = feel if noise == own else learned(noisy, images=images)
+        for j, (name, follow) in enumerate(ways(felt, step_mm=step).items()):
             progress((k + j / 3) / len(points), f"steps of {step:g} mm, noise of {noise:g} mm, {name}")
             made = runs_of(shape, noisy, follow, range(seeds), lines=False)
             off = [each.off_mm for each in made if each is not None and each.right]

@@ -31,7 +31,7 @@ PATIENCE = 40
 #: Of these, so many are answered by a step towards what is seen, the others by steps back to the last good feature.
 TOWARDS = 8
 #: Frames after which a robot that goes nowhere is stopped: the seed's longest edge has 370 steps of 1 mm.
-MOST_FRAMES = 1500
+MOST_FRAMES = 1000
 #: A contour is closed where the start is as near again, mm (or 1.5 steps), after it was as far away.
 NEAR_MM, AWAY_MM = 3.0, 15.0
 #: An edge is believed that is no farther off, mm, ...
