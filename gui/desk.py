@@ -88,6 +88,7 @@ class Desk:
         source: str,
         failed: Callable[[], None] | None = None,
         own: bool = False,
+        wanted: Callable[[], bool] | None = None,
         **arguments: Any,
     ) -> bool:
         """Have long work done, unless other work goes on that was asked for; a failure becomes a line of `source` in the problems list.
@@ -103,6 +104,8 @@ class Desk:
             Called after the failure was listed.
         own : bool
             Nobody asked for it, such as flattening after a cut: it gives way to what is asked for, and is not begun beside it.
+        wanted : callable, optional
+            Whether `done` could still use the result; where a change of the document makes that False, the work is stopped.
 
         Returns
         -------
@@ -120,6 +123,9 @@ class Desk:
         def succeeded(result: Any) -> None:
             if not own:
                 self.session.report("busy", [])
+            if wanted is not None and not wanted():
+                self.in_vain(label)
+                return
             self.session.report(source, [])
             self.guarded(source, lambda: done(result))
 
@@ -130,7 +136,7 @@ class Desk:
             if failed is not None:
                 failed()
 
-        self.runner.start(label, function, done=succeeded, failed=refused, own=own, **arguments)
+        self.runner.start(label, function, done=succeeded, failed=refused, own=own, wanted=wanted, **arguments)
         return True
 
     def guarded(self, source: str, work: Callable[[], object]) -> bool:
@@ -147,6 +153,10 @@ class Desk:
         sentence = in_window(sentence)
         self.session.report(source, [Problem(sentence, source)])
         self.say(sentence)
+
+    def in_vain(self, label: str) -> None:
+        """Say of long work that its result cannot be used."""
+        self.dropped(f"{label} was stopped, as the skin it was asked for has changed; ask for it again")
 
     def dropped(self, sentence: str) -> None:
         """List why the result of long work is not taken; it stays until work is asked for again."""

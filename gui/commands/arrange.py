@@ -48,15 +48,15 @@ class ArrangeCommands:
         chosen, asked = self._chosen(), self._desk.skin
 
         def take(copied: tuple[Sensors, tuple[str, ...]]) -> None:
-            if self._desk.session.skin is not asked:
-                self._desk.dropped("the skin changed while room for copies was looked for, so none were made; copy again")
-                return
             sensors, new = copied
             self._desk.session.do(f"copy {', '.join(chosen)}", replace(asked, sensors=sensors))
             piece = next(s.piece for s in sensors if s.id == new[0])
             self._desk.session.select(Target(piece=piece, sensor=new[0], also=new[1:]))
 
-        self._desk.work("looking for room", tasks.copy_beside, take, source="arrange", skin=asked, ids=chosen)
+        def wanted() -> bool:
+            return self._desk.session.skin is asked
+
+        self._desk.work("looking for room", tasks.copy_beside, take, source="arrange", wanted=wanted, skin=asked, ids=chosen)
 
     def _mirror(self, axis: arrange.Axis) -> Callable[[], None]:
         return lambda: self._change("mirror", lambda sensors, ids: arrange.mirror(sensors, ids, axis=axis))

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from gui.actions import Action
 from gui.desk import Desk
+from gui.jobs.runner import Job
 from gui.state.selection import NOTHING
 from skinfab.placement import edit
 
@@ -16,6 +17,7 @@ class EditCommands:
 
     def __init__(self, desk: Desk) -> None:
         self._desk = desk
+        desk.session.listen("skin", self._stop_what_is_vain)
 
     def actions(self) -> list[Action]:
         """For the table."""
@@ -33,15 +35,29 @@ class EditCommands:
 
     def undo(self) -> None:
         """Take the last step back, and say which it was."""
+        stopped = self._desk.runner.job
         label = self._desk.session.undo()
         if label is not None:
-            self._desk.say(f"Undone: {label}.")
+            self._desk.say(f"Undone: {label}.{self._and_stopped(stopped)}")
 
     def redo(self) -> None:
         """Do the last undone step again, and say which it was."""
+        stopped = self._desk.runner.job
         label = self._desk.session.redo()
         if label is not None:
-            self._desk.say(f"Done again: {label}.")
+            self._desk.say(f"Done again: {label}.{self._and_stopped(stopped)}")
+
+    def _and_stopped(self, job: Job | None) -> str:
+        """What went on before the step and does no more; what the window does by itself needs no word."""
+        gone = job is not None and not job.own and job is not self._desk.runner.job
+        return f" {job.label[:1].upper()}{job.label[1:]} was stopped." if job is not None and gone else ""
+
+    def _stop_what_is_vain(self) -> None:
+        """Work whose result could not be used any more must not keep other work waiting."""
+        job = self._desk.runner.job
+        if job is not None and job.wanted is not None and not job.wanted():
+            self._desk.runner.cancel()
+            self._desk.in_vain(job.label)
 
     def delete(self) -> None:
         """Take the selected sensors off."""

@@ -6,6 +6,7 @@ import tkinter as tk
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,11 +15,11 @@ from gui.actions import Action
 from gui.desk import Desk
 from gui.jobs import tasks
 from gui.state.adopt import adopt
+from gui.state.lifted import counted, taken_off
 from gui.state.problem import Problem
 from gui.state.selection import Target
 from gui.state.wording import in_window
 from skinfab.flatten.methods import METHODS
-from skinfab.placement.sensor import Sensor
 from skinfab.seams.partial import Fault, Reopened
 from skinfab.skin import Skin
 
@@ -28,26 +29,10 @@ _MOST_SETTLED = 400
 
 @dataclass(frozen=True, eq=False)
 class _Settled:
-    """Seams whose pieces are known, and what there is to say of them.
-
-    Parameters
-    ----------
-    seams : (k, 2) int64
-    pieces : tuple of Problem
-    sensors : tuple of Sensor
-        Those that were left.
-    taken_off : tuple of Problem
-        About those that were not; said as long as nobody changes the sensors.
-    """
+    """Seams whose pieces are known, (k, 2) int64, and what there is to say of these."""
 
     seams: NDArray[np.int64]
-    pieces: tuple[Problem, ...]
-    sensors: tuple[Sensor, ...]
-    taken_off: tuple[Problem, ...]
-
-    def said(self, skin: Skin) -> tuple[Problem, ...]:
-        """What holds of that document."""
-        return self.pieces + (self.taken_off if skin.sensors == self.sensors else ())
+    said: tuple[Problem, ...]
 
 
 class SeamCommands:
@@ -62,6 +47,7 @@ class SeamCommands:
         self._desk = desk
         self._settled: list[_Settled] = []
         self._behind = False
+        self._took_off = -1  # the step that took sensors off last
         self.method = "auto"
         self.cones: int | None = None
         desk.session.listen("skin", self._follow)
@@ -82,9 +68,11 @@ class SeamCommands:
         self._desk.work(
             "cutting and flattening",
             tasks.auto_cut,
-            self._take(asked, "cut automatically", over_sensors=True),
+            self._take(asked, "cut automatically"),
             source="flatten",
+            wanted=lambda: self._fits(asked, over_sensors=True),
             skin=asked,
+            lifted=self._desk.session.lifted,
         )
 
     def flatten_anew(self) -> None:
@@ -96,7 +84,9 @@ class SeamCommands:
             tasks.reopen,
             self._take(asked, f"flatten ({self.method})"),
             source="flatten",
+            wanted=lambda: self._fits(asked),
             skin=asked,
+            lifted=self._desk.session.lifted,
             method=self.method,
             cones=self._cones(),
             anew=ids,
@@ -120,17 +110,21 @@ class SeamCommands:
 
         def take(result: Reopened) -> None:
             self._behind = False
-            session = self._desk.session
-            if session.skin is not asked:
-                if session.skin is not None and session.skin.mesh is asked.mesh:
-                    self._desk.dropped("the skin was changed while it was flattened for another thickness, which is let go; set it again")
-                    self._follow()
-                return
             self._settle(result.skin, result)
-            session.do(f"skin {thickness:g} mm thick", result.skin)
+            self._desk.session.do(f"skin {thickness:g} mm thick", result.skin, lifted=result.lifted)
+            self._tell_of_sensors(asked, result)
 
-        label = f"flattening for {thickness:g} mm"
-        self._desk.work(label, tasks.make_thick, take, source="flatten", skin=asked, thickness=thickness, method=self.method)
+        self._desk.work(
+            f"flattening for {thickness:g} mm",
+            tasks.make_thick,
+            take,
+            source="flatten",
+            wanted=lambda: self._fits(asked),
+            skin=asked,
+            lifted=self._desk.session.lifted,
+            thickness=thickness,
+            method=self.method,
+        )
 
     def _cones(self) -> int | None:
         return self.cones if self.method == "bff-cones" else None
@@ -180,55 +174,84 @@ class SeamCommands:
         skin = self._desk.session.skin
         for source in ("seams", "add"):  # answers to one click, which the next step leaves behind
             self._desk.session.report(source, [])
+        self._list_lifted()
         if skin is None:
             return
         for settled in self._settled:
             if skin.seams is settled.seams:
-                self._desk.session.report("flatten", settled.said(skin))  # after undo, what was said then
+                self._desk.session.report("flatten", settled.said)  # after undo, what was said then
                 self._behind = False
+                job = self._desk.runner.job
+                if job is not None and job.own:  # for seams that are no more
+                    self._desk.runner.cancel()
                 return
-        asked = {"skin": skin, "method": self.method, "cones": self._cones(), "anew": []}
+        asked: dict[str, Any] = {
+            "skin": skin,
+            "lifted": self._desk.session.lifted,
+            "method": self.method,
+            "cones": self._cones(),
+            "anew": [],
+        }
         self._behind = True
         self._desk.work("flattening", tasks.reopen, self._take(skin, ""), source="flatten", failed=self.give_up, own=True, **asked)
 
-    def _take(self, asked: Skin, label: str, *, over_sensors: bool = False) -> Callable[[Reopened], None]:
-        """What to do with the result for `asked`: a step of that name, or what completes the last step.
+    def _fits(self, asked: Skin, *, over_sensors: bool = False) -> bool:
+        """Whether what is made of `asked` could be taken; over a change of sensors alone, only the seams are."""
+        session, now = self._desk.session, self._desk.session.skin
+        if now is asked:
+            return True
+        return now is not None and over_sensors and now.mesh is asked.mesh and session.redo_label is None and _asks_the_same(now, asked)
 
-        Where the document was changed meanwhile, only the seams can be taken, and only over a change of sensors.
-        """
+    def _take(self, asked: Skin, label: str) -> Callable[[Reopened], None]:
+        """What to do with the result for `asked`: a step of that name, or what completes the last step."""
 
         def take(result: Reopened) -> None:
             self._behind = False
-            session = self._desk.session
-            if session.skin is None or session.skin.mesh is not asked.mesh:
-                return  # something else was opened meanwhile
+            session, now = self._desk.session, self._desk.skin
             skin = adopt(asked, result.skin)
-            if session.skin is not asked:
-                if over_sensors and session.redo_label is None and _asks_the_same(session.skin, asked):
-                    session.do(label, replace(session.skin, seams=skin.seams))
-                    return
+            if now is not asked:
                 if label:
-                    self._desk.dropped(f"the skin was changed while the work went on, so its result ({label}) is let go; ask for it again")
-                self._follow()
+                    session.do(label, replace(now, seams=skin.seams))
+                else:
+                    self._follow()
                 return
             self._settle(skin, result)
             if label:
-                session.do(label, skin)
-            elif skin.pieces != asked.pieces or skin.seams is not asked.seams:
-                session.amend(skin)
+                session.do(label, skin, lifted=result.lifted)
+            elif skin.pieces != asked.pieces or skin.seams is not asked.seams or result.back:
+                session.amend(skin, lifted=result.lifted)
+            self._tell_of_sensors(asked, result)
 
         return take
 
     def _settle(self, skin: Skin, result: Reopened) -> None:
         """The pieces of `skin` are those of its seams, and this is what there is to say of them."""
-        # Whether the sensors that are there fit is said by the check of all sensors, at every move.
-        lost = tuple(f"{sensor.id} was " for sensor in result.lost)
-        pieces = tuple(_warning(f) for f in result.faults if f.piece or len(f.faces))
-        taken_off = tuple(_warning(f) for f in result.faults if not f.piece and not len(f.faces) and f.text.startswith(lost))
-        settled = _Settled(skin.seams, pieces, skin.sensors, taken_off)
+        # Whether the sensors that are there fit is said by the check of all sensors, at every move; which are not, by `_list_lifted`.
+        settled = _Settled(skin.seams, tuple(_warning(f) for f in result.faults if f.piece or len(f.faces)))
         self._settled.append(settled)
         del self._settled[:-_MOST_SETTLED]
-        self._desk.session.report("flatten", settled.said(skin))
+        self._desk.session.report("flatten", settled.said)
+
+    def _tell_of_sensors(self, asked: Skin, result: Reopened) -> None:
+        """At once, which sensors came back and which were taken off by this step."""
+        said = []
+        if result.lost and asked.sensors:
+            self._took_off = self._desk.session.step
+            self._list_lifted()
+            lost = {sensor.id for sensor in result.lost}
+            said = [p.text + "." for p in taken_off([e for e in result.lifted if e.sensor.id in lost], by_last_step=True)]
+        back: dict[str, list[str]] = {}
+        for sensor in result.back:
+            back.setdefault(sensor.piece, []).append(sensor.id)
+        said += [f"{counted(ids)} {'is' if len(ids) == 1 else 'are'} back on {piece}." for piece, ids in back.items()]
+        if said:
+            self._desk.say(" ".join(said))
+
+    def _list_lifted(self) -> None:
+        session = self._desk.session
+        if session.step == 0:  # another document counts its steps anew
+            self._took_off = -1
+        session.report("lifted", taken_off(session.lifted, by_last_step=session.step == self._took_off))
 
 
 def _warning(fault: Fault) -> Problem:

@@ -50,19 +50,22 @@ class SensorCommands:
         def take(result: tuple[Skin, tuple[str, ...]]) -> None:
             skin, warnings = result
             session = self._desk.session
-            if session.skin is None or session.skin.mesh is not asked.mesh:
-                return  # something else was opened meanwhile
-            if session.skin.pieces != asked.pieces or session.skin.seams is not asked.seams:
-                self._desk.dropped("the pieces changed while sensors were being placed, so none were; place them again")
-                return
-            if session.skin is not asked and session.redo_label is not None:
-                self._desk.dropped("a step was undone while sensors were being placed, so none were; place them again")
-                return
             sensors = adopt(asked, skin).sensors
             self._said = sensors, warnings
-            session.do(label, replace(session.skin, sensors=sensors))
+            session.do(label, replace(self._desk.skin, sensors=sensors), lifted=())
 
-        self._desk.work("placing sensors", tasks.place_anew, take, source="place", skin=asked, file=file)
+        def wanted() -> bool:
+            """On the same pieces, whatever else was done to the skin; but what was undone can be redone."""
+            session, now = self._desk.session, self._desk.session.skin
+            return now is asked or (
+                now is not None
+                and now.mesh is asked.mesh
+                and now.pieces == asked.pieces
+                and now.seams is asked.seams
+                and session.redo_label is None
+            )
+
+        self._desk.work("placing sensors", tasks.place_anew, take, source="place", wanted=wanted, skin=asked, file=file)
 
     def _follow(self) -> None:
         """What was said of sensors holds of these alone."""
@@ -72,4 +75,4 @@ class SensorCommands:
     def clear(self) -> None:
         """Take all off."""
         self._desk.session.select(NOTHING)
-        self._desk.session.do("remove all sensors", replace(self._desk.skin, sensors=()))
+        self._desk.session.do("remove all sensors", replace(self._desk.skin, sensors=()), lifted=())

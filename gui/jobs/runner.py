@@ -56,12 +56,15 @@ class Job:
         Called with a sentence.
     own : bool
         Nobody asked for it: other work may take its place.
+    wanted : callable, optional
+        Whether its result could still be used.
     """
 
     label: str
     done: Callable[[Any], None]
     failed: Callable[[str], None]
     own: bool = False
+    wanted: Callable[[], bool] | None = None
 
 
 class Runner:
@@ -102,6 +105,7 @@ class Runner:
         done: Callable[[Any], None],
         failed: Callable[[str], None],
         own: bool = False,
+        wanted: Callable[[], bool] | None = None,
         **arguments: Any,
     ) -> None:
         """Have `function` done with `arguments` and ``progress``; what was going on is cancelled.
@@ -117,13 +121,15 @@ class Runner:
             Called with one sentence where it raised, or its process ended.
         own : bool
             Nobody asked for it.
+        wanted : callable, optional
+            Whether its result could still be used, for one who looks whether to go on with it.
         **arguments
             Values that can be pickled.
         """
         if self._closed:  # the window was closed under a question that led here
             return
         self.cancel()
-        self._job = Job(label, done, failed, own)
+        self._job = Job(label, done, failed, own, wanted)
         self._changed(Step(0.0, label))
         self._order = Order(function, arguments)
         self._send()

@@ -13,7 +13,7 @@ from skinfab.flatten.mapping import FlatMap
 from skinfab.material import Material
 from skinfab.mesh.model import Mesh
 from skinfab.pieces import Piece
-from skinfab.placement.check import check_sensor
+from skinfab.placement.check import check_sensor, find_faults
 from skinfab.placement.edit import middle_of
 from skinfab.placement.sensor import Sensor
 
@@ -40,6 +40,89 @@ class Carried:
     sensors: tuple[Sensor, ...]
     lost: tuple[Sensor, ...]
     remarks: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Lifted:
+    """A sensor that lies nowhere for now, and the spot on the object that it is to come back to.
+
+    Parameters
+    ----------
+    sensor : Sensor
+        As it was last.
+    piece : Piece
+        The flat piece that it lay on, as that was: the two together say where on the object.
+    why : str
+        What keeps it off though its spot lies flat: "overlaps C9"; "" where its spot does not.
+    """
+
+    sensor: Sensor
+    piece: Piece
+    why: str = ""
+
+
+@dataclass(frozen=True)
+class PutBack:
+    """What became of lifted sensors.
+
+    Parameters
+    ----------
+    sensors : tuple of Sensor
+        Those that lay there, and behind them those that came back.
+    back : tuple of Sensor
+        Those that came back.
+    still : tuple of Lifted
+        Those that did not.
+    """
+
+    sensors: tuple[Sensor, ...]
+    back: tuple[Sensor, ...]
+    still: tuple[Lifted, ...]
+
+
+def put_back(
+    mesh: Mesh, lifted: Sequence[Lifted], sensors: Sequence[Sensor], after: Sequence[Piece], *, material: Material | None = None
+) -> PutBack:
+    """Put lifted sensors back on their spots, where these lie flat, they fit, and their names and channels are still free.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The surface that is flattened.
+    lifted : sequence of Lifted
+    sensors : sequence of Sensor
+        Those that lie on the pieces.
+    after : sequence of Piece
+    material : Material, optional
+        Says what fits; without it that is not asked.
+    """
+    moves = _Moves(mesh, after)
+    pieces = {piece.id: piece for piece in after}
+    there, back, still = list(sensors), list[Sensor](), list[Lifted]()
+    for each in lifted:
+        new = moves.of(each.sensor, each.piece)
+        if new is None:
+            still.append(dataclasses.replace(each, why=""))
+            continue
+        why = _taken(new, there)
+        if not why and material is not None:
+            why = "; ".join(f.brief or f.text for f in find_faults(pieces[new.piece], new, there, material=material))
+        if why:
+            still.append(dataclasses.replace(each, why=why))
+        else:
+            there.append(new)
+            back.append(new)
+    return PutBack(tuple(there), tuple(back), tuple(still))
+
+
+def _taken(sensor: Sensor, there: Sequence[Sensor]) -> str:
+    """Who has its name or its channel by now."""
+    for other in there:
+        if other.id.lower() == sensor.id.lower():
+            return f"another sensor is named {sensor.id}"
+        if other.channel == sensor.channel:
+            return f"{other.id} has its channel {sensor.channel}"
+    return ""
 
 
 def carry(

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from skinfab.flatten.distortion import Distortion
 from skinfab.material import Material
 from skinfab.pieces import Piece
-from skinfab.placement.carry import carry
+from skinfab.placement.carry import Lifted, carry, put_back
 from skinfab.placement.sensor import Sensor
 from skinfab.progress import Progress, silent
 from skinfab.seams.auto import find_seams
@@ -59,12 +59,18 @@ class Reopened:
         Of the pieces, in their order.
     lost : tuple of Sensor
         Sensors whose spot is on no piece any more, as they were.
+    back : tuple of Sensor
+        Lifted ones that came back.
+    lifted : tuple of Lifted
+        Those that did not, and those that were lost now: what to hand over when the skin is cut the next time.
     """
 
     skin: Skin
     faults: tuple[Fault, ...]
     distortions: tuple[Distortion, ...]
     lost: tuple[Sensor, ...]
+    back: tuple[Sensor, ...] = ()
+    lifted: tuple[Lifted, ...] = ()
 
 
 def reopen(
@@ -75,6 +81,7 @@ def reopen(
     cones: int | None = None,
     anew: Collection[str] = (),
     material: Material | None = None,
+    lifted: Sequence[Lifted] = (),
     progress: Progress = silent,
 ) -> Reopened:
     """The pieces that a skin's seams now give, flattened where they changed.
@@ -96,6 +103,8 @@ def reopen(
         Ids of pieces to flatten by `method` though their cuts did not change.
     material : Material, optional
         Says whether sensors still fit.
+    lifted : sequence of Lifted
+        Sensors that lost their spot to an earlier cut; they come back where they can.
     progress : Progress, optional
 
     Returns
@@ -131,11 +140,24 @@ def reopen(
     seams = mesh.topology.E[cut & ~mesh.topology.is_boundary]
     progress(1.0, "flattening")
     return _with_sensors(
-        replace(skin, seams=seams, pieces=pieces, max_distortion=limits.mean), skin, faults, distortions, material=material
+        replace(skin, seams=seams, pieces=pieces, max_distortion=limits.mean),
+        skin,
+        faults,
+        distortions,
+        material=material,
+        lifted=lifted,
     )
 
 
-def auto_cut(skin: Skin, limits: Limits, *, neck: float = 4.0, material: Material | None = None, progress: Progress = silent) -> Reopened:
+def auto_cut(
+    skin: Skin,
+    limits: Limits,
+    *,
+    neck: float = 4.0,
+    material: Material | None = None,
+    lifted: Sequence[Lifted] = (),
+    progress: Progress = silent,
+) -> Reopened:
     """Automatic seams in place of the skin's own: locked ones stay, forbidden edges are left alone, preferences are heeded.
 
     Without marks they are the seams of `skinfab segment` for the same surface.
@@ -149,6 +171,8 @@ def auto_cut(skin: Skin, limits: Limits, *, neck: float = 4.0, material: Materia
         Pieces are not joined across less than this.
     material : Material, optional
         Says whether sensors still fit.
+    lifted : sequence of Lifted
+        Sensors that lost their spot to an earlier cut; they come back where they can.
     progress : Progress, optional
 
     Raises
@@ -164,16 +188,25 @@ def auto_cut(skin: Skin, limits: Limits, *, neck: float = 4.0, material: Materia
     by_first_face = {int(piece.faces[0]): verdict.distortion for piece, verdict in found.pieces}
     new = replace(skin, seams=mesh.topology.E[found.cut & ~mesh.topology.is_boundary], pieces=pieces, max_distortion=limits.mean)
     progress(1.0, "cutting and flattening")
-    return _with_sensors(new, skin, [], [by_first_face[int(piece.faces[0])] for piece in pieces], material=material)
+    return _with_sensors(new, skin, [], [by_first_face[int(piece.faces[0])] for piece in pieces], material=material, lifted=lifted)
 
 
 def _with_sensors(
-    new: Skin, before: Skin, faults: list[Fault], distortions: Sequence[Distortion], *, material: Material | None
+    new: Skin,
+    before: Skin,
+    faults: list[Fault],
+    distortions: Sequence[Distortion],
+    *,
+    material: Material | None,
+    lifted: Sequence[Lifted],
 ) -> Reopened:
     carried = carry(new.mesh, before.sensors, before.pieces, new.pieces, material=material)
+    put = put_back(new.mesh, lifted, carried.sensors, new.pieces, material=material)
+    old = {piece.id: piece for piece in before.pieces}
+    off = (Lifted(sensor, old[sensor.piece]) for sensor in carried.lost if sensor.piece in old)
     nowhere = np.zeros(0, dtype=np.int64)
     said = (*faults, *(Fault(remark, nowhere) for remark in carried.remarks))
-    return Reopened(replace(new, sensors=carried.sensors), said, tuple(distortions), carried.lost)
+    return Reopened(replace(new, sensors=put.sensors), said, tuple(distortions), carried.lost, put.back, (*put.still, *off))
 
 
 def _is_same(piece: Piece, part: OpenPiece) -> bool:

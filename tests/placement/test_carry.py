@@ -11,7 +11,7 @@ from skinfab.material import load_material
 from skinfab.mesh.model import Mesh
 from skinfab.patterns.registry import make_pattern
 from skinfab.pieces import Piece
-from skinfab.placement.carry import carry
+from skinfab.placement.carry import Lifted, carry, put_back
 from skinfab.placement.edit import middle_of
 from skinfab.placement.sensor import Sensor
 from skinfab.seams.cut import open_pieces
@@ -120,3 +120,35 @@ def test_two_that_come_too_close_are_told_of_once() -> None:
     both = [sensor_at(80, 50), sensor_at(90, 50, id="C2")]
     remarks = carry(mesh, both, flat_pieces(mesh), flat_pieces(mesh, turn=0.2), material=MATERIAL).remarks
     assert len(remarks) == 1 and remarks[0].startswith("C2 overlaps C1")
+
+
+def test_a_lifted_sensor_comes_back_to_its_spot() -> None:
+    mesh = sheet()
+    before, after = flat_pieces(mesh), flat_pieces(mesh, 4, turn=1.0)
+    sensor = sensor_at(80, 50)
+    put = put_back(mesh, [Lifted(sensor, before[0])], [], after, material=MATERIAL)
+    (new,) = put.back
+    assert put.sensors == (new,) and put.still == ()
+    piece = next(p for p in after if p.id == new.piece)
+    np.testing.assert_allclose(on_object(mesh, piece, new), on_object(mesh, before[0], sensor), atol=1e-6)
+
+
+def test_a_lifted_sensor_stays_off_where_it_has_no_spot_or_does_not_fit() -> None:
+    mesh = sheet()
+    before, after = flat_pieces(mesh), flat_pieces(mesh, 4)
+    lifted = Lifted(sensor_at(80, 50), before[0])
+
+    def why(*there: Sensor, pieces: list[Piece] = after) -> str:
+        put = put_back(mesh, [lifted], there, pieces, material=MATERIAL)
+        assert put.back == () and put.sensors == there
+        (still,) = put.still
+        assert still.sensor is lifted.sensor and still.piece is lifted.piece
+        return still.why
+
+    assert why(pieces=[]) == "" == why(pieces=[p for p in after if p.UV[:, 0].max() < 60])
+    (own,) = put_back(mesh, [lifted], [], after).back
+    other = dataclasses.replace(own, id="C9", channel=9)
+    assert why(other) == "overlaps C9"
+    assert why(dataclasses.replace(other, id="c1")) == "another sensor is named C1"
+    assert why(dataclasses.replace(other, channel=0)) == "C9 has its channel 0"
+    assert put_back(mesh, [lifted], [other], after).back == (own,), "without a material only names and channels are asked"

@@ -13,6 +13,7 @@ from skinfab.flatten.distortion import measure
 from skinfab.material import load_material
 from skinfab.mesh.model import Mesh
 from skinfab.patterns.registry import make_pattern
+from skinfab.placement.carry import Lifted
 from skinfab.placement.sensor import Sensor
 from skinfab.seams.auto import find_seams
 from skinfab.seams.edit import cut_path, forbid, glue, lock, paint, path_edges
@@ -212,6 +213,27 @@ def test_sensors_follow_and_none_is_lost_silently() -> None:
     lid = replace(one, mesh=one.mesh, pieces=())
     gone = reopen(replace(lid, sensors=sensors), LIMITS)
     assert gone.lost == sensors and sum("was taken off" in text for text in texts(gone)) == 2
+
+
+def test_lifted_sensors_come_back_when_the_skin_is_cut_the_next_time() -> None:
+    one = opened(sheet()).skin
+    sensors = tuple(Sensor(f"C{k}", "P1", SPIRAL, x, 30.0, 0.0, k) for k, x in ((1, 25.0), (2, 80.0)))
+    lifted = [Lifted(sensor, one.pieces[0]) for sensor in sensors]
+    parted = reopen(cut_path(replace(one, pieces=()), column(7)), LIMITS, lifted=lifted)
+    assert parted.back == parted.skin.sensors and parted.lifted == () and [s.id for s in parted.back] == ["C1", "C2"]
+    assert len({s.piece for s in parted.back}) == 2
+    again = auto_cut(replace(one, pieces=()), LIMITS, lifted=lifted)
+    assert [s.id for s in again.back] == ["C1", "C2"] and again.lifted == ()
+
+
+def test_what_a_cut_takes_off_is_lifted() -> None:
+    flat = opened(cut_path(skin_of(*cube()), [0, 1, 3, 2, 6, 7, 5, 4])).skin
+    sensor = Sensor("C1", "P1", SPIRAL, *flat.pieces[0].UV[flat.pieces[0].F[:2].ravel()].mean(axis=0), 0.0, 1)
+    closed = reopen(replace(flat, seams=NO_SEAMS, sensors=(sensor,)), LIMITS)
+    (lifted,) = closed.lifted
+    assert closed.skin.sensors == () and lifted.sensor is sensor and lifted.piece is flat.pieces[0]
+    still = reopen(closed.skin, LIMITS, lifted=closed.lifted)
+    assert [each.sensor for each in still.lifted] == [sensor] and still.lost == still.back == ()
 
 
 def test_degenerate_triangles_do_not_raise() -> None:

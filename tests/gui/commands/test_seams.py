@@ -6,6 +6,11 @@ import numpy as np
 import pytest
 from person import MESHES
 
+from skinfab.flatten.mapping import FlatMap
+from skinfab.patterns.registry import make_pattern
+from skinfab.placement.edit import middle_of
+from skinfab.placement.sensor import Sensor
+
 SPREAD = np.array([[0, 1], [1, 3], [2, 3], [2, 6], [6, 7], [5, 7], [4, 5]])
 
 
@@ -117,27 +122,32 @@ def test_flattening_anew_never_brings_back_a_cut_that_was_undone(cube):
     cube.app.actions.do("flatten")
     assert cube.app.runner.job.label == "flattening"
     cube.app.actions.do("undo")
+    assert cube.app.runner.job is None
     cube.wait()
     assert len(cube.skin.seams) == 0 and cube.skin.pieces == () and cube.session.redo_label == "cut"
-    assert any("is let go" in text for text in cube.problems("warning"))
+    assert any("flattening was stopped" in text for text in cube.problems("warning"))
     cube.app.actions.do("auto_cut")
     cube.wait()
-    assert not any("is let go" in text for text in cube.problems("warning")), "said until work is asked for again"
+    assert not any("was stopped" in text for text in cube.problems("warning")), "said until work is asked for again"
 
 
-def test_seams_that_changed_during_an_automatic_cut_are_kept_and_flattened(cube):
+def test_seams_that_changed_during_an_automatic_cut_stop_it_and_are_flattened(cube):
     cube.app.actions.do("auto_cut")
     cut(cube)
-    assert cube.app.runner.job.label == "cutting and flattening", "what was asked for is not stopped by the window's own work"
+    assert cube.app.runner.job is None, "what could not be used any more keeps nothing waiting"
+    cube.app.root.update()
+    assert cube.app.runner.job.label == "flattening"
     cube.wait()
     assert cube.session.undo_label == "cut" and len(cube.skin.seams) == 7 and len(cube.skin.pieces) == 1
-    assert any("cut automatically" in text for text in cube.problems("warning"))
+    assert any("cutting and flattening was stopped" in text for text in cube.problems("warning"))
 
 
 def test_an_undo_during_an_automatic_cut_can_still_be_redone(cube):
     cube.session.do("another seed", replace(cube.skin, seed=77))
     cube.app.actions.do("auto_cut")
     cube.app.actions.do("undo")
+    assert cube.app.runner.job is None
+    assert cube.app.status.text.get() == "Undone: another seed. Cutting and flattening was stopped."
     cube.wait()
     assert cube.session.redo_label == "another seed" and cube.skin.pieces == ()
 
@@ -173,19 +183,60 @@ def test_a_fault_of_a_sensor_is_said_once_and_goes_with_it(cube):
     assert [p.text for p in cube.session.problems if "C98" in p.text] == []
 
 
-def test_a_sensor_that_a_cut_took_off_is_said_until_sensors_change(cube):
+def test_sensors_that_a_cut_took_off_come_back_once_their_piece_lies_flat_again(cube):
     cut(cube)
     cube.wait()
-    cube.app.actions.do("auto_place")
-    cube.wait()
-    sensors = cube.skin.sensors
+    spiral = make_pattern("contact-spiral", {"s": 20})
+    (piece,) = cube.skin.pieces
+    middles = [piece.UV[piece.F[[k, k + 1]].ravel()].mean(axis=0) for k in (0, 4)]
+    first, second = (Sensor(f"C{k + 1}", piece.id, spiral, *xy, 0.0, k) for k, xy in enumerate(middles))
+    one = replace(cube.skin, sensors=(first,))
+    cube.session.do("one", one)
+    both = replace(one, sensors=(first, second))
+    cube.session.do("both", both)
     cut(cube, SPREAD[:1], "glued")
     cube.wait()
-    lost = [text for text in cube.problems("warning") if "was taken off" in text]
-    assert cube.skin.pieces == () and len(lost) == len(sensors) >= 1
+    line = "2 sensors taken off P1 until it lies flat again"
+    assert cube.skin.pieces == () == cube.skin.sensors
+    assert cube.app.problems.shown[0].text == f"{line}; Ctrl+Z brings them back"
+    assert cube.app.status.text.get() == f"{line}; Ctrl+Z brings them back."
+    cut(cube, SPREAD[1:2])
+    cube.wait()
+    assert line in cube.problems("warning"), "undo of this step alone would not bring them back"
+    cut(cube)
+    cube.wait()
+    assert cube.app.status.text.get() == "2 sensors are back on P1."
+    assert not any("taken off" in text for text in cube.problems("warning")) and cube.problems() == []
+    for old, new in zip(both.sensors, cube.skin.sensors, strict=True):
+        maps = [FlatMap(cube.skin.mesh, skin.piece("P1")) for skin in (both, cube.skin)]
+        spots = [each.to_object(middle_of(s)[None]).xyz for each, s in zip(maps, (old, new), strict=True)]
+        assert spots[0] == pytest.approx(spots[1], abs=1e-6) and replace(new, x=old.x, y=old.y, angle=old.angle) == old
+    for _ in range(2):
+        cube.app.actions.do("undo")
+    cube.wait()
+    assert cube.skin.sensors == () and f"{line}; Ctrl+Z brings them back" in cube.problems("warning")
+    cube.app.actions.do("undo")
+    assert cube.skin is both and not any("taken off" in text for text in cube.problems("warning"))
+
+
+def test_sensors_taken_off_are_forgotten_when_all_are_placed_anew_or_removed(cube):
+    cut(cube)
+    cube.wait()
+    (piece,) = cube.skin.pieces
+    spiral = make_pattern("contact-spiral", {"s": 20})
+    cube.session.do(
+        "one", replace(cube.skin, sensors=(Sensor("C1", piece.id, spiral, *piece.UV[piece.F[:2].ravel()].mean(axis=0), 0.0, 0),))
+    )
+    cut(cube, SPREAD[:1], "glued")
+    cube.wait()
+    assert [each.sensor.id for each in cube.session.lifted] == ["C1"]
+    cut(cube)
+    cube.wait()
+    cube.app.actions.do("clear")
+    assert cube.session.lifted == ()
     cube.app.actions.do("undo")
     cube.wait()
-    assert cube.skin.sensors == sensors and not any("was taken off" in text for text in cube.problems("warning"))
+    assert [s.id for s in cube.skin.sensors] == ["C1"]
 
 
 def test_a_thickness_that_folds_is_said_in_the_windows_words_and_the_materials_own_is_rounded_off(person):

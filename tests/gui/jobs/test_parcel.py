@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from gui.jobs.parcel import receive, send, shared
+from skinfab.placement.carry import Lifted
 
 
 def through(message, known=(), theirs=()):
@@ -47,3 +48,10 @@ def test_who_is_gone_is_an_end_not_a_wait():
         receive(ours)
     with pytest.raises((BrokenPipeError, ConnectionResetError)):
         send(ours, np.zeros(10))
+
+
+def test_lifted_sensors_come_back_with_their_own_pieces(skin):
+    ours = {"lifted": (Lifted(skin.sensors[0], skin.pieces[0]),)}
+    theirs = through(ours)
+    back = through(theirs["lifted"], shared(theirs), shared(ours))
+    assert back[0].piece is skin.pieces[0] and back[0].sensor is skin.sensors[0]
