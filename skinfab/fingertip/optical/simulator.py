@@ -2,7 +2,7 @@
 
 The dome's skin is pushed in where the plate is higher than it, and drapes over the plate's edge: what is pushed in is smoothed over a
 millimetre or two. Each pin stands upright on the skin, so its tip moves against the skin's slope by its own length. Skin that
-touches may be dragged sideways (shear). The tips are drawn as bright spots, brightest in the middle, with noise.
+touches may be dragged sideways (shear). The tips are drawn as bright spots, with noise.
 
 What it leaves out is in docs/optical.md, and so is what each term of it changes.
 """
@@ -98,17 +98,14 @@ class Errors:
         The same for where a tip stands at rest: it stays.
     grey : float
         Standard deviation of a pixel, of 255.
-    shading : float
-        How much darker the rim is lit than the middle.
     """
 
     pin_mm: float = 0.05
     scatter_mm: float = 0.1
     grey: float = 4.0
-    shading: float = 0.4
 
 
-NO_ERRORS = Errors(0.0, 0.0, 0.0, 0.0)
+NO_ERRORS = Errors(0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -154,12 +151,6 @@ class Fingertip:
         x = np.arange(-r, r + _GRID_MM / 2, _GRID_MM)
         X = np.stack(np.meshgrid(x, x), axis=-1)
         return X, r - np.sqrt(np.maximum(r * r - (X * X).sum(axis=-1), 0.0))
-
-    @cached_property
-    def _shading(self) -> NDArray[np.float32]:
-        n = self.dome.size_px
-        x = (np.arange(n) - (n - 1) / 2) / (n / 2)
-        return (1 - self.errors.shading * np.minimum(x[:, None] ** 2 + x * x, 1)).astype(np.float32)
 
     @cached_property
     def _grain(self) -> NDArray[np.float32]:
@@ -227,12 +218,12 @@ class Fingertip:
         radius = round(self.dome.spot_mm * self.dome.px_per_mm * scale)
         for x, y in np.rint(self.dome.to_px(P) * scale).astype(int).tolist():
             cv2.circle(drawn, (x, y), radius, 255, cv2.FILLED, cv2.LINE_AA, _SHIFT)
-        grey = drawn * self._shading
-        if rng is not None and self.errors.grey:
-            # One grain, elsewhere in every frame: drawing it anew took half of the time.
-            down, across = rng.integers(0, grey.shape[0], 2)
-            n = grey.shape[0]
-            grey += self._grain[down : down + n, across : across + n]
+        if rng is None or not self.errors.grey:
+            return drawn
+        # One grain, elsewhere in every frame: drawing it anew took half of the time.
+        n = self.dome.size_px
+        down, across = rng.integers(0, n, 2)
+        grey = drawn + self._grain[down : down + n, across : across + n]
         return np.clip(np.rint(grey), 0, 255).astype(np.uint8)
 
     def frame(
