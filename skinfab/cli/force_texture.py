@@ -131,6 +131,12 @@ def run(args: argparse.Namespace) -> int:
     model, simulated_model = load_texture(args.model)
     logs, slides, notes = _read(args.logs, quiet=args.json)
     decisions = [_decided(model.decide, log, each) for log, each in zip(logs, slides, strict=True)]
+    notes += [
+        f"{log.name}: slides for {len(each.normal) / each.rate_hz:.1f} s, {d.windows} window{'s' * (d.windows > 1)} of its spectrum: of "
+        f"held-out slides so short {100 * d.right:.0f} % were told right, of whole ones {100 * model.lengths[-1].right:.0f} %"
+        for log, each, d in zip(logs, slides, decisions, strict=True)
+        if d.short
+    ]
     simulated = simulated_model or any(log.simulated for log in logs)
     if simulated_model and not all(log.simulated for log in logs):
         notes.append("the model was learned from simulated slides; what it says of real ones is not to be relied on")
@@ -142,10 +148,12 @@ def run(args: argparse.Namespace) -> int:
                 "simulated": log.simulated,
                 "texture": d.name,
                 "nearest": d.nearest,
-                "probability": d.probability,
-                "probabilities": d.probabilities,
+                "probability": d.probability if d.known else None,
+                "probabilities": d.probabilities if d.known else None,
                 "label": log.label or None,
                 "samples": len(each.normal),
+                "windows": d.windows,
+                "right_at_this_length": d.right,
             }
             for log, each, d in zip(logs, slides, decisions, strict=True)
         ],
@@ -203,7 +211,7 @@ def _table(logs: Sequence[WrenchLog], decisions: Sequence[Decision]) -> str:
     rows = csv.writer(text, lineterminator="\n")
     rows.writerow(["log", "texture", "nearest", "probability", "label", "simulated"])
     for log, d in zip(logs, decisions, strict=True):
-        rows.writerow([log.name, d.name, d.nearest, f"{d.probability:.4f}", log.label, int(log.simulated)])
+        rows.writerow([log.name, d.name, d.nearest, f"{d.probability:.4f}" if d.known else "", log.label, int(log.simulated)])
     return text.getvalue()
 
 

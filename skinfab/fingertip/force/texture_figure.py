@@ -12,7 +12,7 @@ from skinfab.fingertip.force.logs import WrenchLog
 from skinfab.fingertip.force.texture import N_FFT, TOP_HZ, Slide, interpolated_peaks
 from skinfab.fingertip.force.texture_model import Decision
 
-_DPI, _SHOWN, _SECONDS = 130, 6, 3.0
+_DPI, _SHOWN = 130, 6
 
 
 def draw_slides(logs: Sequence[WrenchLog], slides: Sequence[Slide], decisions: Sequence[Decision], path: Path, *, simulated: bool) -> None:
@@ -29,9 +29,9 @@ def draw_slides(logs: Sequence[WrenchLog], slides: Sequence[Slide], decisions: S
     figure.suptitle(f"Slides{' (simulated)' if simulated else ''}{more}", fontsize=10)
     for axes, k in zip(figure.subplots(shown, 2, squeeze=False), sorted(order), strict=True):
         log, each, d = logs[k], slides[k], decisions[k]
-        n = min(len(each.ratio), round(_SECONDS * each.rate_hz))
-        axes[0].plot(np.arange(n) / each.rate_hz, each.ratio[:n], lw=0.7, color="#0072B2")
-        axes[0].set_title(f"{log.name}: {d.name}, {d.probability:.2f}", fontsize=8, loc="left")
+        axes[0].plot(np.arange(len(each.ratio)) / each.rate_hz, each.ratio, lw=0.7, color="#0072B2")
+        sure = f", {d.probability:.2f}" if d.known else f" (nearest {d.nearest})"
+        axes[0].set_title(f"{log.name}: {d.name}{sure}", fontsize=8, loc="left")
         axes[0].set_ylabel("friction", fontsize=8)
         n_fft = min(N_FFT, len(each.ratio))
         window = np.hanning(n_fft + 1)[:-1]
@@ -41,6 +41,7 @@ def draw_slides(logs: Sequence[WrenchLog], slides: Sequence[Slide], decisions: S
         axes[1].plot(frequency, size, lw=0.8, color="#555555")
         peaks = interpolated_peaks(each.ratio, each.rate_hz, n_fft=n_fft)
         axes[1].plot(peaks.frequency, peaks.magnitude, "o", ms=4, color="#D55E00")
+        axes[1].set_ylabel("|X| / N of friction", fontsize=8)
         axes[1].set_xlim(0, TOP_HZ)
         axes[1].set_title("  ".join(f"{f:.2f} Hz" for f in peaks.frequency), fontsize=8, loc="left")
         for each_axes in axes:

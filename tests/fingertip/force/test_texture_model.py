@@ -66,6 +66,20 @@ def test_known_materials_are_hardly_ever_unknown(trained: Trained, data: Data) -
     assert np.mean([trained.model.decide(part).known for part in data[0]]) > 0.95
 
 
+def test_a_shorter_slide_of_a_known_material_is_known_and_said_to_be_short(trained: Trained, data: Data) -> None:
+    whole = trained.model.decide(data[0][0])
+    assert not whole.short and whole.windows == 3 and whole.right == trained.model.lengths[-1].right
+    fresh = [sliding_part(log) for log in texture_logs(specimens=2, slides=1, seed=12)]
+    for n in (300, 520, 700):
+        cut = [replace(p, tangential=p.tangential[:n], normal=p.normal[:n], inclination=p.inclination[:n]) for p in fresh]
+        found = [trained.model.decide(part) for part in cut]
+        # By the limit of whole slides a third of them was unknown.
+        assert np.mean([each.known for each in found]) > 0.9 and all(each.short and each.windows == 1 for each in found)
+    rubber = slide(Material(friction=0.9, pitch_mm=3.0, ripple=0.2), seed=1)
+    short = replace(rubber, time=rubber.time[:700], force=rubber.force[:700], moment=rubber.moment[:700])
+    assert trained.model.decide(sliding_part(short)).name == UNKNOWN
+
+
 def test_another_rate_is_refused(trained: Trained, data: Data) -> None:
     with pytest.raises(InputError, match=r"100 samples a second and the model was learned at 200"):
         trained.model.decide(replace(data[0][0], rate_hz=100.0))
