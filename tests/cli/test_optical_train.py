@@ -1,0 +1,111 @@
+"""`skinfab optical train` and `run`: learned from images, judged on others, and used on a folder and a video."""
+
+import contextlib
+import csv
+import io
+import json
+import shutil
+from pathlib import Path
+
+import cv2
+import pytest
+
+from skinfab.cli.main import main
+
+TRAIN, RUN = ["errors.csv", "model.npz", "result.json", "train.png"], ["edges.csv", "optical.png", "result.json"]
+
+
+def rows(path: Path) -> list[dict[str, str]]:
+    return list(csv.DictReader(path.read_text().splitlines()))
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("optical")
+    with contextlib.redirect_stdout(io.StringIO()):
+        assert main(["optical", "simulate", "--images", "100", "--reach", "3", "-o", str(folder / "sim")]) == 0
+        assert main(["optical", "train", "--targets", str(folder / "sim/targets.csv"), "-o", str(folder / "train")]) == 0
+    return folder
+
+
+def test_held_out_errors_are_told(made: Path) -> None:
+    assert sorted(each.name for each in (made / "train").iterdir()) == TRAIN
+    result = json.loads((made / "train/result.json").read_text())
+    assert result["simulated"] and result["images"] == 100 and result["groups"] == 10 and result["pins"] == 127
+    table = rows(made / "train/errors.csv")
+    assert [row["quantity"] for row in table] == ["offset", "depth", "angle"] and {row["simulated"] for row in table} == {"1"}
+    for row in table:
+        assert float(row["low"]) < float(row["mean"]) < float(row["high"])
+    assert float(table[0]["mean"]) < 0.8
+
+
+def test_columns_and_test_table_are_named(made: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    table = rows(made / "sim/targets.csv")
+    for name, part in (("learn", table[:80]), ("test", table[80:])):
+        lines = ["pic,y,yaw", *(f"{Path(row['image']).name},{row['offset_mm']},{row['angle_deg']}" for row in part)]
+        (tmp_path / f"{name}.csv").write_text("\n".join(lines) + "\n")
+    images = str(made / "sim/images")
+    columns = ["--image-column", "pic", "--offset-column", "y", "--angle-column", "yaw"]
+    words = ["optical", "train", "--targets", str(tmp_path / "learn.csv"), "--images", images, *columns, "--count", "60", "--json"]
+    test = ["--test-targets", str(tmp_path / "test.csv"), "--test-images", images]
+    assert main([*words, *test, "-o", str(tmp_path / "out")]) == 0
+    said = json.loads(capsys.readouterr().out)
+    assert said["images"] == 60 and said["held_out"]["images"] == 20 and said["simulated"]
+    assert [each["quantity"] for each in said["held_out"]["errors"]] == ["offset", "angle"]
+    assert any("depth is not learned" in note for note in said["notes"])
+    again = ["--test-targets", str(tmp_path / "learn.csv"), "--test-images", images]
+    assert main([*words, *again, "-o", str(tmp_path / "out")]) == 1
+    assert "which was learned from" in capsys.readouterr().err
+    assert main([*words, "--test-images", images, "-o", str(tmp_path / "out")]) == 2
+
+
+def test_tables_that_cannot_be_used_are_refused(made: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    text = (made / "sim/targets.csv").read_text()
+    shutil.copytree(made / "sim/images", tmp_path / "images")
+    whole, lines = (tmp_path / "images/00007.png").read_bytes(), text.splitlines()
+    for wrong, words in (
+        (text, "00007.png is no picture"),
+        (text.replace("images/00009", "images/x"), "x.png: No such file"),
+        ("\n".join([*lines[:3], lines[2]]), "twice"),
+        (text.replace("offset_mm", "off"), "has no column 'offset_mm'"),
+        ("\n".join([lines[0], lines[1].replace(",0.", ",?", 1).replace(",1", ",x"), *lines[2:]]), "is not a number"),
+        (lines[0], "has no rows"),
+    ):
+        (tmp_path / "targets.csv").write_text(wrong)
+        (tmp_path / "images/00007.png").write_bytes(b"" if wrong is text else whole)
+        assert main(["optical", "train", "--targets", str(tmp_path / "targets.csv"), "-o", str(tmp_path / "out")]) == 1
+        assert words in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_folder_and_a_video_are_read(made: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    shutil.copytree(made / "sim/images", tmp_path / "images")
+    (tmp_path / "images/00007.png").write_bytes(b"")
+    model = ["--model", str(made / "train/model.npz")]
+    assert main(["optical", "run", str(tmp_path / "images"), *model, "-o", str(tmp_path / "folder"), "--json"]) == 0
+    said = json.loads(capsys.readouterr().out)
+    assert said["simulated"] and said["pictures"] == 99 and said["unreadable"] == 1 and "00007.png" in " ".join(said["notes"])
+    assert sorted(each.name for each in (tmp_path / "folder").iterdir()) == RUN
+    felt, true = rows(tmp_path / "folder/edges.csv"), rows(made / "sim/targets.csv")
+    assert abs(float(felt[0]["offset_mm"]) - float(true[0]["offset_mm"])) < 1 and felt[0]["simulated"] == "1"
+    path = tmp_path / "some.avi"
+    writer = cv2.VideoWriter(str(path), cv2.VideoWriter_fourcc(*"MJPG"), 25, (240, 240), False)
+    for k in range(1, 6):
+        writer.write(cv2.imread(str(made / f"sim/images/{k:05d}.png"), cv2.IMREAD_GRAYSCALE))
+    writer.release()
+    assert main(["optical", "run", str(path), *model, "-o", str(tmp_path / "video")]) == 0
+    assert "5 pictures" in capsys.readouterr().out
+    assert main(["optical", "run", "--camera", str(path), *model, "-o", str(tmp_path / "camera")]) == 0
+    assert "mm off the plate" in capsys.readouterr().out
+    assert {row["simulated"] for row in rows(tmp_path / "camera/edges.csv")} == {"1"}
+
+
+def test_wrong_use_says_what_is_right(made: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    model = ["--model", str(made / "train/model.npz"), "-o", str(tmp_path / "out")]
+    for words in (["run", *model], ["run", "x", "--camera", "0", *model], ["run", "x", "--seconds", "3", *model]):
+        assert main(["optical", *words]) == 2
+    capsys.readouterr()
+    assert main(["optical", "run", "--camera", "77", *model]) == 1
+    assert "there is no camera 77" in capsys.readouterr().err
+    assert main(["optical", "run", str(made / "sim/targets.csv"), *model]) == 1
+    assert "no video that can be read" in capsys.readouterr().err
