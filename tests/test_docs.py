@@ -19,6 +19,7 @@ PAGES = [
         "readout.md",
         "nail.md",
         "array.md",
+        "optical.md",
         "force.md",
     )
 ]  # patterns.md has its own test
