@@ -1,6 +1,7 @@
 """`skinfab nail simulate`: logs and labels that belong together, marked as simulated, the same for the same seed."""
 
 import json
+import shlex
 from pathlib import Path
 
 import numpy as np
@@ -69,6 +70,15 @@ def test_json_and_the_same_seed(folder: Path, tmp_path: Path, capsys: pytest.Cap
         assert all(Path(name).is_file() for name in told["files"])
         same = (out / "participant-1.csv").read_bytes() == (folder / "participant-1.csv").read_bytes()
         assert same is alike
+
+
+def test_the_documents_next_command_works_on_what_was_simulated(folder: Path, tmp_path: Path) -> None:
+    document = Path(__file__).parents[2] / "docs/nail.md"
+    line = next(each for each in document.read_text().splitlines() if each.startswith("skinfab nail train logs/labels.csv"))
+    words = shlex.split(line, comments=True)[1:]
+    places = {"logs/labels.csv": str(folder / "labels.csv"), "model.npz": str(tmp_path / "model.npz")}
+    assert main([places.get(word, word) for word in words]) == 0
+    assert (tmp_path / "model.npz").is_file()
 
 
 @pytest.mark.parametrize(
