@@ -6,10 +6,10 @@ import argparse
 import csv
 import io
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from skinfab.cli import steps
 from skinfab.cli.bench import repeats
@@ -129,8 +129,7 @@ def run(args: argparse.Namespace) -> int:
 
     require_apart(args.output, _RUN, [*args.logs, args.model])
     model, simulated_model = load_texture(args.model)
-    logs, slides, notes = _read(args.logs, quiet=args.json)
-    decisions = [_decided(model.decide, log, each) for log, each in zip(logs, slides, strict=True)]
+    logs, slides, decisions, notes, failed = _decided(args.logs, model.decide, quiet=args.json)
     notes += [
         f"{log.name}: slides for {len(each.normal) / each.rate_hz:.1f} s, {d.windows} window{'s' * (d.windows > 1)} of its spectrum: of "
         f"held-out slides so short {100 * d.right:.0f} % were told right, of whole ones {100 * model.lengths[-1].right:.0f} %"
@@ -157,6 +156,7 @@ def run(args: argparse.Namespace) -> int:
             }
             for log, each, d in zip(logs, slides, decisions, strict=True)
         ],
+        "failed": failed,
         "notes": notes,
     }
     with staged_folder(args.output) as folder:
@@ -165,7 +165,7 @@ def run(args: argparse.Namespace) -> int:
         draw_slides(logs, slides, decisions, folder / "texture.png", simulated=simulated)
     if args.json:
         print(json.dumps(result, allow_nan=False))
-        return 0
+        return 1 if failed else 0
     steps.say(notes)
     for log, d in zip(logs, decisions, strict=True):
         print(
@@ -173,37 +173,74 @@ def run(args: argparse.Namespace) -> int:
             + (f" (like no known one; nearest {d.nearest})" if not d.known else f", {d.probability:.2f}")
         )
     print(f"{args.output}: {', '.join(_RUN)}")
-    return 0
-
-
-def _decided(decide: Any, log: WrenchLog, each: Slide) -> Decision:
-    from skinfab.errors import InputError
-
-    try:
-        found: Decision = decide(each)
-        return found
-    except InputError as fault:
-        raise InputError(f"{log.name}: {fault}") from fault
+    steps.say([why if name in why else f"{name}: {why}" for name, why in failed.items()], kind="failed")
+    return 1 if failed else 0
 
 
 def _read(paths: Sequence[Path], *, quiet: bool) -> tuple[list[WrenchLog], list[Slide], list[str]]:
+    from skinfab.progress import terminal_progress
+
+    _require_names(paths)
+    logs, slides = [], []
+    with terminal_progress(quiet=quiet) as progress:
+        for k, path in enumerate(paths):
+            progress(k / len(paths), path.name)
+            log, part = _read_one(path)
+            logs.append(log)
+            slides.append(part)
+        progress(1.0, "done")
+    return logs, slides, [note for log, part in zip(logs, slides, strict=True) for note in (*log.notes, *part.notes)]
+
+
+def _decided(
+    paths: Sequence[Path], decide: Callable[[Slide], Decision], *, quiet: bool
+) -> tuple[list[WrenchLog], list[Slide], list[Decision], list[str], dict[str, str]]:
+    """As `_read`, but logs that cannot be decided on are told by name, and stop no others.
+
+    Raises
+    ------
+    InputError
+        None of them can be.
+    """
     from skinfab.errors import InputError
+    from skinfab.progress import terminal_progress
+
+    _require_names(paths)
+    logs, slides, decisions, notes = [], [], [], []
+    failed: dict[str, str] = {}
+    with terminal_progress(quiet=quiet) as progress:
+        for k, path in enumerate(paths):
+            progress(k / len(paths), path.name)
+            try:
+                log, part = _read_one(path)
+                decisions.append(decide(part))
+            except InputError as fault:
+                failed[path.name] = str(fault)
+                continue
+            logs.append(log)
+            slides.append(part)
+            notes += [*log.notes, *part.notes]
+        progress(1.0, "done")
+    if not logs:
+        name, why = next(iter(failed.items()))
+        raise InputError((why if name in why else f"{name}: {why}") + (f" (and {len(failed) - 1} more failed)" if len(failed) > 1 else ""))
+    return logs, slides, decisions, notes, failed
+
+
+def _read_one(path: Path) -> tuple[WrenchLog, Slide]:
     from skinfab.fingertip.force.logs import read_wrench
     from skinfab.fingertip.force.texture import sliding_part
-    from skinfab.progress import terminal_progress
+
+    log = read_wrench(path)
+    return log, sliding_part(log)
+
+
+def _require_names(paths: Sequence[Path]) -> None:
+    from skinfab.errors import InputError
 
     names = [path.name for path in paths]
     if twice := next((name for name in names if names.count(name) > 1), None):
         raise InputError(f"two logs are called {twice}; give each file a name of its own")
-    logs, slides, notes = [], [], []
-    with terminal_progress(quiet=quiet) as progress:
-        for k, path in enumerate(paths):
-            progress(k / len(paths), path.name)
-            logs.append(read_wrench(path))
-            slides.append(sliding_part(logs[-1]))
-            notes += [*logs[-1].notes, *slides[-1].notes]
-        progress(1.0, "done")
-    return logs, slides, notes
 
 
 def _table(logs: Sequence[WrenchLog], decisions: Sequence[Decision]) -> str:

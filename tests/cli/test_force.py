@@ -12,7 +12,7 @@ import pytest
 from skinfab.cli.main import main
 from skinfab.fingertip.force.gravity_simulator import PAPER_TRUTH, hold
 from skinfab.fingertip.force.logs import write_wrench
-from skinfab.fingertip.force.simulator import MATERIALS, slide
+from skinfab.fingertip.force.simulator import MATERIALS, Material, slide
 
 
 def said(capsys: pytest.CaptureFixture[str], *arguments: object) -> dict[str, Any]:
@@ -68,6 +68,25 @@ def test_a_simulated_model_on_a_real_log_is_warned_of(model: Path, tmp_path: Pat
     assert "learned from simulated slides" in result["notes"][0] and result["simulated"]
 
 
+def test_a_log_that_cannot_be_decided_on_stops_no_others(
+    slides: Path, model: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "bad.csv").write_text("time,Fx\n0,1\n")
+    options = ["--model", str(model), "-o", str(tmp_path / "out")]
+    arguments = ["force", "run", "texture", str(tmp_path / "bad.csv")]
+    assert main([*arguments, *options]) == 1 and not (tmp_path / "out").exists()
+    good = sorted(slides.iterdir())[0]
+    rubber = slide(Material(friction=0.9, pitch_mm=3.0, ripple=0.2), seed=1)
+    write_wrench(rubber, tmp_path / "rubber.csv")
+    capsys.readouterr()
+    assert main([*arguments, str(good), str(tmp_path / "rubber.csv"), *options, "--json"]) == 1
+    result = json.loads(capsys.readouterr().out)
+    assert list(result["failed"]) == ["bad.csv"] and [d["log"] for d in result["decisions"]] == [good.name, "rubber.csv"]
+    assert result["decisions"][1]["texture"] == "unknown" and result["decisions"][1]["probability"] is None
+    assert main([*arguments, str(good), *options]) == 1
+    assert "failed: " in (said_why := capsys.readouterr().err) and "bad.csv has no column Fy" in said_why
+
+
 def test_gravity_from_logs_to_a_table(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     said(capsys, "simulate", "gravity", "-o", tmp_path / "logs")
     truth = {row["log"]: row for row in csv.DictReader((tmp_path / "logs" / "truth.csv").read_text().splitlines())}
@@ -104,6 +123,8 @@ def test_liquids(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     result = said(capsys, "run", "liquid", *made["files"], "-o", tmp_path / "out")
     assert [cup["liquid"] for cup in result["cups"]] == [cup["label"] == "liquid" for cup in result["cups"]]
     assert (tmp_path / "out" / "liquid.png").is_file()
+    rows = (tmp_path / "out" / "liquid.csv").read_text().splitlines()
+    assert len(rows) == 1 + len(made["files"]) and rows[0].startswith("log,answer,chance") and rows[1].split(",")[1] == "solid or empty"
 
 
 @pytest.mark.parametrize(
