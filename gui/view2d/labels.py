@@ -7,7 +7,7 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import NDArray
 
-from gui.view2d.background import LABEL_PX, LEAST_SEAM_PX, NOTCH_PX, RULER_PX, Ground
+from gui.view2d.background import LABEL_PX, LEAST_SEAM_PX, NOTCH_PX, RULER_PX, Ground, faces_under
 from gui.view2d.pen import Box, Pen
 
 Float = NDArray[np.float64]
@@ -18,6 +18,10 @@ _CELL_PX = 3.0
 _ALONG_PX = (0.0, 14.0, -14.0, 28.0, -28.0, 42.0, -42.0, 60.0, -60.0)
 #: So much of a label may reach over its seam, or lie on a corner of something.
 _FREE = 0.12
+#: One that would hide more of what lies there is left out: the seam's other side, the object and the status bar tell it too.
+_HIDES = 0.3
+#: Names beside small sensors, pixels: their letters, and how far from the sensor they stand.
+_SMALL_PX, _BESIDE_PX = 10.0, 3.0
 
 
 class Taken:
@@ -70,7 +74,7 @@ class Taken:
 
 
 def paint_labels(ground: Ground, pen: Pen, face: NDArray[np.int32], taken: Taken) -> list[Box]:
-    """A label at every seam side that is long enough on the screen, inside its piece or, where that is taken, beside it.
+    """A label at every seam side that is long enough on the screen and has room, inside its piece or, where that is taken, beside it.
 
     Parameters
     ----------
@@ -93,8 +97,40 @@ def paint_labels(ground: Ground, pen: Pen, face: NDArray[np.int32], taken: Taken
             continue
         notch = ground.plane.to_px(side.notch + ground.sheet.offset[side.piece])
         at = _best(pen, face, taken, _places(px, notch, side.inward, pen.ratio), side.label)
-        boxes.append(pen.text(at, side.label, ground.theme.seam, size=LABEL_PX, ground=ground.theme.view))
-        taken.box(boxes[-1])
+        if at is not None:
+            boxes.append(pen.text(at, side.label, ground.theme.seam, size=LABEL_PX, ground=ground.theme.view))
+            taken.box(boxes[-1])
+    return boxes
+
+
+def paint_small_names(named: Iterable[tuple[str, str, Float]], ground: Ground, pen: Pen, taken: Taken) -> list[Box]:
+    """Names of sensors that are too small to be written over, beside them where there is room; where they are.
+
+    Parameters
+    ----------
+    named : iterable of (str, str, (k, 2) float)
+        Name, colour, and the sensor's line in pixels.
+    ground : Ground
+    pen : Pen
+    taken : Taken
+        Grows by the names.
+    """
+    boxes = []
+    for name, colour, px in named:
+        (left, low), (right, high) = px.min(axis=0), px.max(axis=0)
+        far, (wide, tall) = _BESIDE_PX * pen.ratio, pen.room(name, _SMALL_PX, bold=True)
+        middle, level = (left + right) / 2, (low + high) / 2
+        for x, y in (
+            (right + far + wide / 2, level),
+            (left - far - wide / 2, level),
+            (middle, high + far + tall / 2),
+            (middle, low - far - tall / 2),
+        ):
+            box = (x - wide / 2, y - tall / 2, x + wide / 2, y + tall / 2)
+            if taken.share(box) <= _FREE:
+                boxes.append(pen.text((x, y), name, colour, size=_SMALL_PX, ground=ground.theme.view, bold=True))
+                taken.box(boxes[-1])
+                break
     return boxes
 
 
@@ -117,18 +153,19 @@ def _places(px: Float, notch: Float, inward: Float, ratio: float) -> list[tuple[
     return found
 
 
-def _best(pen: Pen, face: NDArray[np.int32], taken: Taken, places: list[tuple[Float, bool]], label: str) -> Float:
-    """The first place that is free, or the least taken one."""
+def _best(pen: Pen, face: NDArray[np.int32], taken: Taken, places: list[tuple[Float, bool]], label: str) -> Float | None:
+    """The first place that is free, or the least taken one; None where a label would hide what is there."""
     width, height = pen.room(label, LABEL_PX)
-    least, best = np.inf, places[0][0]
+    least, best = np.inf, None
     for middle, inside in places:
         box = (middle[0] - width / 2, middle[1] - height / 2, middle[0] + width / 2, middle[1] + height / 2)
         if box[0] < RULER_PX * pen.ratio or box[1] < RULER_PX * pen.ratio or box[2] > pen.width or box[3] > pen.height:
             continue
         # A label beside its piece must not look like one of another piece, nor one of this piece stand beside it.
-        rows = slice(max(int(pen.height - box[3]), 0), max(int(pen.height - box[1]), 0) + 1)
-        on_faces = float((face[rows, int(box[0]) : int(box[2]) + 1] >= 0).mean())
-        cost = taken.share(box) + (1.0 - on_faces if inside else 2.0 * on_faces)
+        on_faces, hides = faces_under(box, face), taken.share(box)
+        if hides > _HIDES:
+            continue
+        cost = hides + (1.0 - on_faces if inside else 2.0 * on_faces)
         if cost <= _FREE:
             return middle
         if cost < least:

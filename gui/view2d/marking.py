@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,8 +23,8 @@ Float = NDArray[np.float64]
 HANDLE_PX, HANDLE_RADIUS_PX = 22.0, 6.0
 #: A bead thinner than this would not be seen.
 _LEAST_BEAD_PX = 1.3
-#: Names of sensors smaller than this on the screen would hide them.
-_LEAST_NAMED_PX = 22.0
+#: Names would hide sensors that are smaller than this on the screen, and stand beside them; of still smaller ones there are none.
+WRITTEN_OVER_PX, LEAST_NAMED_PX = 46.0, 16.0
 
 
 @dataclass(frozen=True)
@@ -79,10 +79,17 @@ class Marker:
             if self.cased:
                 self.pen.line(px, self.theme.view, width + 2.5)
             self.pen.line(px, colour, width)
-            if np.ptp(px, axis=0).max() >= _LEAST_NAMED_PX * self.pen.ratio:
+            if np.ptp(px, axis=0).max() >= WRITTEN_OVER_PX * self.pen.ratio:
                 middle = self.plane.to_px(self.lines.middle(sensor, self.sheet))
                 names.append(self.pen.text(middle, sensor.id, colour, size=11, ground=self.theme.view, bold=True))
         return names
+
+    def small(self, sensors: Iterable[Sensor], findings: Findings) -> Iterator[tuple[str, str, Float]]:
+        """Name, colour and line, pixels, of each sensor whose name stands beside it."""
+        for sensor in sensors:
+            px = self.plane.to_px(self.lines.of(sensor, self.sheet))
+            if LEAST_NAMED_PX <= np.ptp(px, axis=0).max() / self.pen.ratio < WRITTEN_OVER_PX:
+                yield sensor.id, self.theme.error if sensor.id in findings else self.theme.ink, px
 
     def selected(self, target: Target, sensors: Mapping[str, Sensor], *, handle: bool) -> None:
         """What is selected; one sensor alone has a handle."""

@@ -18,7 +18,7 @@ from gui.view2d.background import BAR_PX, RULER_PX, Ground, paint_faces, paint_f
 from gui.view2d.fill import fill
 from gui.view2d.hands import Hands
 from gui.view2d.hit import REACH_PX, Hit2D, hit
-from gui.view2d.labels import Taken, paint_labels
+from gui.view2d.labels import Taken, paint_labels, paint_small_names
 from gui.view2d.lines import Lines
 from gui.view2d.live import Live
 from gui.view2d.marking import HANDLE_PX, Marker, Shown
@@ -249,11 +249,13 @@ class View2D(ttk.Frame):
         marker = self._marker(pen, sheet)
         held = {s.id for s in self.hands.sensors}
         lying = [s for s in skin.sensors if s.id not in held]
-        named = marker.sensors(lying, {k: v for k, v in self.live.findings.items() if k not in held})
+        findings = {k: v for k, v in self.live.findings.items() if k not in held}
+        named = marker.sensors(lying, findings)
         taken = Taken(pen.width, pen.height, pen.ratio)
         taken.lines(self.plane.to_px(self.lines.of(sensor, sheet)) for sensor in lying)
-        for box in (*named, *paint_names(ground, pen)):
+        for box in (*named, *paint_names(ground, pen, self._triangles)):
             taken.box(box)
+        paint_small_names(marker.small(lying, findings), ground, pen, taken)
         paint_labels(ground, pen, self._triangles, taken)
         paint_frame(ground, pen)
 

@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 from gui.view2d import view as view_module
-from gui.view2d.labels import Taken, paint_labels
+from gui.view2d.background import faces_under, paint_names
+from gui.view2d.labels import Taken, paint_labels, paint_small_names
+from gui.view2d.marking import WRITTEN_OVER_PX
 from skinfab.placement.edit import middle_of
 
 
@@ -66,9 +68,68 @@ def test_none_lies_under_a_sensor(window, labels):
     assert a[2] < b[0] or b[2] < a[0] or a[3] < b[1] or b[3] < a[1]
 
 
-def test_one_without_a_free_place_is_still_written_over_what_is_there(window, labels, monkeypatch):
-    monkeypatch.setattr(Taken, "share", lambda self, box: 1.0)
-    assert len(labels(replace(window.skin, seed=5))) == 2
+@pytest.mark.parametrize(("share", "drawn"), [(1.0, 0), (0.35, 0), (0.25, 2)])
+def test_one_that_would_hide_what_is_there_is_left_out(window, labels, monkeypatch, share, drawn):
+    monkeypatch.setattr(Taken, "share", lambda self, box: share)
+    assert len(labels(replace(window.skin, seed=round(100 * share)))) == drawn
+
+
+@pytest.fixture
+def names(window, labels, monkeypatch):
+    """Where names of sensors are drawn beside them."""
+    kept = []
+
+    def keep(*what):
+        kept[:] = paint_small_names(*what)
+        return kept
+
+    monkeypatch.setattr(view_module, "paint_small_names", keep)
+
+    def drawn(skin):
+        labels(skin)
+        return list(kept)
+
+    return drawn
+
+
+def size_on_screen(window):
+    return max(np.ptp(line, axis=0).max() for line in lines(window, window.skin)) / window.view.surface.ratio
+
+
+def test_the_name_of_a_small_sensor_stands_beside_it(window, names):
+    assert size_on_screen(window) > WRITTEN_OVER_PX and names(replace(window.skin, seed=7)) == []
+    window.view.zoom(32.0 / size_on_screen(window))
+    boxes, small = names(replace(window.skin, seed=8)), lines(window, window.skin)
+    assert len(boxes) == 2
+    for box, line in zip(boxes, small, strict=True):
+        assert overlap(box, np.concatenate(small)) == 0
+        middle = np.array([box[0] + box[2], box[1] + box[3]]) / 2
+        assert np.hypot(*(middle - (line.min(axis=0) + line.max(axis=0)) / 2)) < 45 * window.view.surface.ratio
+
+
+def test_a_small_sensor_without_room_beside_it_has_no_name(window, names, monkeypatch):
+    monkeypatch.setattr(Taken, "share", lambda self, box: 0.2)
+    window.view.zoom(32.0 / size_on_screen(window))
+    assert names(replace(window.skin, seed=9)) == []
+
+
+def test_a_piece_is_named_where_its_name_hides_no_other(window, monkeypatch):
+    seen = []
+
+    def keep(ground, pen, face):
+        usual = paint_names(ground, pen, face)
+        left, low, right, high = usual[0]
+        crowded = face.copy()
+        crowded[int(pen.height - high) : int(pen.height - low), int(left) : int(right)] = 0
+        seen[:] = [(usual, face), (paint_names(ground, pen, crowded), crowded)]
+        return usual
+
+    monkeypatch.setattr(view_module, "paint_names", keep)
+    window.view.redraw()
+    window.view.surface.draw()
+    (usual, face), (moved, crowded) = seen
+    assert faces_under(usual[0], face) == 0 < faces_under(usual[0], crowded) and usual[0] != moved[0] and usual[1] == moved[1]
+    assert faces_under(moved[0], crowded) == 0, "another corner of the piece is free"
 
 
 def test_seams_too_short_on_the_screen_have_none(window, labels):
