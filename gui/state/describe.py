@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from gui.state.derived import Derived
 from gui.state.session import Session
+from skinfab.skin import Skin
 
 
 def describe(session: Session, derived: Derived) -> str:
@@ -18,10 +19,7 @@ def describe(session: Session, derived: Derived) -> str:
     if skin is None:
         return "Open a mesh or a skin to begin (Ctrl+O)."
     if not at:
-        seams = "no seams yet: cut by clicks (C) or automatically (F5)"
-        return f"{skin.source.file}: " + (
-            f"{_counted(len(skin.pieces), 'piece')}, {_counted(len(skin.sensors), 'sensor')}" if skin.pieces else seams
-        )
+        return f"{skin.source.file}: {_whole(skin)}"
     parts = []
     if at.sensor:
         sensor = next((s for s in skin.sensors if s.id == at.sensor), None)
@@ -37,6 +35,14 @@ def describe(session: Session, derived: Derived) -> str:
     if at.face >= 0:
         parts.append(f"face {at.face}" + ("" if at.piece else ", not flat yet"))
     return "   ".join(parts)
+
+
+def _whole(skin: Skin) -> str:
+    if skin.pieces:
+        return f"{_counted(len(skin.pieces), 'piece')}, {_counted(len(skin.sensors), 'sensor')}"
+    if len(skin.seams):
+        return "cut, but nothing lies flat yet: cut further by clicks (C) or automatically (F5)"
+    return "no seams yet: cut by clicks (C) or automatically (F5)"
 
 
 def _counted(number: int, what: str) -> str:

@@ -106,7 +106,7 @@ def lay_flat(
             return LaidFlat(piece, None, None, shape, nothing)
         verdict = _verdict(mesh, piece, limits, method, is_disk=not shape)
         if not verdict.distortion.mean <= _HOPELESS:
-            return LaidFlat(piece, None, None, shape or f"is far from flat (mean d {verdict.distortion.mean:.3g}): cut it further", nothing)
+            return LaidFlat(piece, None, None, shape or "is hardly open yet, so it cannot lie flat: cut it further", nothing)
         return LaidFlat(piece, verdict.UV, verdict.distortion, shape or fault_of(verdict, limits), nothing)
     except (SkinfabError, ArithmeticError, np.linalg.LinAlgError) as fault:
         return LaidFlat(

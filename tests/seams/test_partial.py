@@ -15,6 +15,7 @@ from skinfab.mesh.model import Mesh
 from skinfab.patterns.registry import make_pattern
 from skinfab.placement.carry import Lifted
 from skinfab.placement.sensor import Sensor
+from skinfab.seams import lenient
 from skinfab.seams.auto import find_seams
 from skinfab.seams.edit import cut_path, forbid, glue, lock, paint, path_edges
 from skinfab.seams.finish import finish
@@ -142,6 +143,15 @@ def test_what_would_dwarf_all_others_is_left_out() -> None:
     result = opened(skin)
     assert "a ring with 4 borders: cut from one border to another" in texts(result)[0]
     assert all(max(piece.size) < 1000 for piece in result.skin.pieces)
+
+
+def test_what_is_far_from_flat_is_named_without_a_number_that_says_nothing(monkeypatch) -> None:
+    monkeypatch.setattr(lenient, "_HOPELESS", 8.0)  # as on a scan of 85,000 triangles opened by one slit, which takes long
+    skin = skin_of(*sphere(2))
+    edge = skin.mesh.topology.E[0]
+    further = skin.mesh.topology.E[(skin.mesh.topology.E == edge[1]).any(axis=1) & (skin.mesh.topology.E != edge[0]).all(axis=1)][0]
+    result = opened(cut_path(skin, [*edge.tolist(), int(further.sum() - edge[1])]))
+    assert result.skin.pieces == () and texts(result) == ["the object is hardly open yet, so it cannot lie flat: cut it further"]
 
 
 def test_a_handle_is_named() -> None:

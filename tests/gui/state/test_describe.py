@@ -23,7 +23,9 @@ def said(session):
 
 def test_nothing_is_the_document_in_numbers(session, said):
     assert said() == "plate.obj: 2 pieces, 2 sensors"
-    session.do("uncut", replace(session.skin, pieces=(), sensors=()))
+    session.do("not flat", replace(session.skin, pieces=(), sensors=()))
+    assert said() == "plate.obj: cut, but nothing lies flat yet: cut further by clicks (C) or automatically (F5)"
+    session.do("uncut", replace(session.skin, seams=session.skin.seams[:0]))
     assert said() == "plate.obj: no seams yet: cut by clicks (C) or automatically (F5)"
 
 
