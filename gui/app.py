@@ -6,7 +6,6 @@ import contextlib
 import time
 import tkinter as tk
 import traceback
-from dataclasses import replace
 from pathlib import Path
 from tkinter import ttk
 from types import TracebackType
@@ -46,7 +45,7 @@ from gui.state.outdated import Outdated
 from gui.state.problem import Problem
 from gui.state.profiles import ProfileShelf
 from gui.state.session import Session, Topic
-from gui.state.store import Remembered, on_screen, recall, remember, state_folder
+from gui.state.store import Remembered, on_screen, recall, state_folder
 from gui.theme import THEMES, apply
 from gui.toolpath.choice import ArcsChoice
 from gui.toolpath.tab import ToolPathTab
@@ -150,8 +149,7 @@ class App:
         self.background.close()
         self.autosave.close(keep=keep_copy)
         self.sweep.close()
-        what = replace(self.files.remembered, theme=self.theme.name, geometry=geometry)
-        self.desk.guarded("close", lambda: remember(self.desk.state, what))
+        self.files.keep(theme=self.theme.name, geometry=geometry)
         self.root.destroy()
 
     def use_theme(self, name: str) -> None:
@@ -162,6 +160,7 @@ class App:
         for part in (self.view3d, self.view2d, self.problems, self.new_sensor, self.toolpath, self.live):
             part.restyle(self.theme)
         self.actions.refresh()
+        self.files.keep(theme=name)
 
     # How it is put together
 
@@ -327,7 +326,7 @@ class App:
         self.seams.give_up()
         self.session.report("busy", [])
         if self.runner.cancel():
-            self.status.say("Stopped." + (" F6 flattens the pieces." if self.session.skin is not None else ""))
+            self.status.say("Stopped." + (" F6 flattens the pieces." if self.seams.can_flatten() else ""))
 
     def _fault(self, kind: type[BaseException], fault: BaseException, trace: TracebackType | None) -> None:
         """What a callback raised: a sentence, never a traceback or a dead window."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import tkinter as tk
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -153,6 +154,14 @@ class FileCommands:
     def _remember(self, path: Path) -> None:
         """Among the recent files, written at once: a crash must not take it."""
         self.remembered = self.remembered.with_recent(path)
+        self._write()
+
+    def keep(self, *, theme: str, geometry: str | None = None) -> None:
+        """Remember the window's colours, and its place too where that is given, from now on."""
+        self.remembered = replace(self.remembered, theme=theme, geometry=self.remembered.geometry if geometry is None else geometry)
+        self._write()
+
+    def _write(self) -> None:
         self._desk.guarded("remember", lambda: remember(self._desk.state, self.remembered))
 
     def _keep_copy(self) -> None:

@@ -57,7 +57,7 @@ class SeamCommands:
         has = self._desk.has_skin
         return [
             Action("auto_cut", "Cut automatically", "Seams", self.auto_cut, "F5", has, "Few good pieces; locked seams stay.", True),
-            Action("flatten", "Flatten all pieces anew", "Seams", self.flatten_anew, "F6", self._can_flatten),
+            Action("flatten", "Flatten all pieces anew", "Seams", self.flatten_anew, "F6", self.can_flatten),
             Action("clear_seams", "Glue all seams that are not locked", "Seams", self.clear, "", has),
             Action("clear_marks", "Forget locks, bans and paint", "Seams", self.clear_marks, "", self._has_marks),
         ]
@@ -165,7 +165,8 @@ class SeamCommands:
         """The pieces stay behind the seams until the next change, or until they are asked for: the user stopped it, or it failed."""
         self._behind = False
 
-    def _can_flatten(self) -> bool:
+    def can_flatten(self) -> bool:
+        """There are seams, or pieces already."""
         skin = self._desk.session.skin
         return skin is not None and (bool(skin.pieces) or len(skin.seams) > 0)
 

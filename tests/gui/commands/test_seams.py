@@ -76,6 +76,12 @@ def test_what_was_stopped_can_be_flattened_by_its_key(cube):
     assert len(cube.skin.pieces) == 1
 
 
+def test_stopped_with_nothing_to_flatten_no_key_is_named_for_it(cube):
+    cube.press("F5")
+    cube.app.root.nametowidget("statusbar.work.cancel").invoke()
+    assert cube.app.runner.job is None and cube.app.status.text.get() == "Stopped."
+
+
 def test_another_cut_keeps_the_pieces_that_stay_the_same(cube):
     cut(cube)
     cube.wait()

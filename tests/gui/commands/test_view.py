@@ -5,6 +5,7 @@ import pytest
 from person import MESHES
 
 from gui.state.session import SHADINGS
+from gui.state.store import recall
 from gui.theme import DARK, LIGHT
 
 
@@ -55,5 +56,7 @@ def test_grid_and_dark_go_on_and_off(cube):
     assert np.array_equal(shown, picture(cube))
     cube.press("Control-d")
     assert cube.app.theme is DARK and cube.app.actions["dark"].checked()
+    assert recall(cube.app.desk.state).theme == "dark", "a crash must not take it"
     cube.press("Control-d")
+    assert recall(cube.app.desk.state).theme == "light"
     assert cube.app.theme is LIGHT and np.array_equal(shown, picture(cube))
