@@ -137,3 +137,16 @@ def test_a_second_harmonic_that_is_not_fitted_leaks_into_the_drive() -> None:
     _, a, b = np.linalg.lstsq(A, wave, rcond=None)[0]
     assert abs((a + 1j * b) - np.exp(0.4j)) > 0.02
     assert lock_in_weights(14, RATE_HZ, 169.0) @ wave == pytest.approx(np.exp(0.4j), abs=1e-9)
+
+
+def test_lost_frames_that_are_closed_up_make_the_phase_jump(usual: list[Session]) -> None:
+    closed, kept_places = [], []
+    for each in usual:
+        model, windows = learn(each), asked(each, 256)
+        kept = np.random.default_rng(0).uniform(size=256) > 0.15
+        closed.append(
+            float((model.decide(windows[:, kept], drive_hz=frequency(windows[:, kept], model)).classes == each.rounds.classes).mean())
+        )
+        holed = np.where(kept[:, None], windows, np.nan)
+        kept_places.append(float((model.decide(holed, drive_hz=frequency(holed, model)).classes == each.rounds.classes).mean()))
+    assert mean(closed) < mean(kept_places) - 0.15 and mean(kept_places) > mean([improved(each) for each in usual]) - 0.06

@@ -20,11 +20,13 @@ from numpy.typing import NDArray
 
 from skinfab.errors import InputError
 from skinfab.files import atomic_write
+from skinfab.readout.checks import check_times
 from skinfab.readout.frame import Recording
 from skinfab.readout.logs.log import read_log
 from skinfab.spreadsheet import read_csv_lines
 
 FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
 
 #: The six channels, in the order of every array here: acceleration along, angular velocity about x, y and z.
 CHANNELS = ("Ax", "Ay", "Az", "Gx", "Gy", "Gz")
@@ -32,6 +34,8 @@ CHANNELS = ("Ax", "Ay", "Az", "Gx", "Gy", "Gz")
 NOTHING = "none"
 #: A larger table is none of trials.
 MAX_BYTES = 50_000_000
+#: A log of which so many times more is lost than there is has no use for rows in between.
+_MOST_PLACES = 20
 
 _NEEDED = ("log", "start_s", "end_s", "label")
 _WORDS = ("log", "label", "participant", "trial", "part")
@@ -162,10 +166,12 @@ def _number(cell: str, where: str) -> float:
 def read_trials(path: str | Path) -> tuple[list[Trial], bool, list[str]]:
     """The trials of a table, whether they are simulated, and what is to be said of them.
 
+    A frame that was lost is a row of NaN in its place: closing up would make the motor's phase jump.
+
     Raises
     ------
     InputError
-        As `read_labels`; a log cannot be read, has none of the channels, or ends before a trial does.
+        As `read_labels`; a log cannot be read, has none of the channels, ends before a trial does, or lacks most of one.
     """
     path = Path(path)
     labels, simulated = read_labels(path)
@@ -176,16 +182,21 @@ def read_trials(path: str | Path) -> tuple[list[Trial], bool, list[str]]:
             log = read_log(path.parent / each.log)
             notes += [f"{log.file}: {note}" if log.file not in note else note for note in log.notes]
             simulated |= log.recording.stream.simulated
-            values, bad = six_channels(log.recording)
-            timed = np.isfinite(log.recording.device_time)
-            rate, time = rate_of(log.recording), log.recording.device_time[timed]
-            logs[each.log] = (time - time[0], values[timed], bad[timed], rate)
+            time, values, bad, rate = _evenly(log.recording)
+            logs[each.log] = (time - time[0], values, bad, rate)
+            notes += [f"{log.file}: {wrong}" for wrong in check_times(log.recording)]
         time, values, bad, rate = logs[each.log]
         first, last = np.searchsorted(time, [each.start_s - 0.5 / rate, each.end_s - 0.5 / rate])
         if last - first < 2 or time[-1] < each.end_s - 1.5 / rate:
             raise InputError(
                 f"{path}: {each.log} ends at {time[-1]:.3f} s and a trial of it lasts from {each.start_s:g} to {each.end_s:g} s; "
                 "give the whole log, or mend the table"
+            )
+        there = np.isfinite(values[first:last]).any(axis=1)
+        if there.mean() < 0.5:
+            raise InputError(
+                f"{path}: {each.log} has {there.sum()} of the {last - first} readings of its trial from {each.start_s:g} to "
+                f"{each.end_s:g} s; leave that row out, or record the trial again"
             )
         trials.append(Trial(each, values[first:last], bad[first:last], rate))
     return trials, simulated, notes
@@ -210,6 +221,47 @@ def six_channels(recording: Recording) -> tuple[FloatArray, NDArray[np.bool_]]:
             values[:, k] = recording.column(name)
             saturated[:, k] = recording.saturated[:, stream.index(name)]
     return values, saturated
+
+
+def places_of(recording: Recording, rate_hz: float) -> IntArray:
+    """Which place in an even row of readings each frame has: by the device's count, or by its times where that shows nothing lost.
+
+    A plain table has no count of its own. Times that lie in bunches say when frames were fetched, and are not used.
+
+    Parameters
+    ----------
+    recording : Recording
+    rate_hz : float
+
+    Returns
+    -------
+    (n,) int
+        From 0; not above its predecessor where a device began anew.
+    """
+    count: IntArray = recording.sequence - recording.sequence[:1]
+    if (np.diff(count) != 1).any():
+        return count
+    steps = np.diff(recording.device_time) * rate_hz
+    if not np.isfinite(steps).all() or (steps < 0.5).any():
+        return count
+    places: IntArray = np.concatenate([[0], np.cumsum(np.rint(steps).astype(np.int64))])
+    return places
+
+
+def _evenly(recording: Recording) -> tuple[FloatArray, FloatArray, NDArray[np.bool_], float]:
+    """Times, readings and which are saturated, with a row for each frame that was lost, and how many come a second."""
+    rate = rate_of(recording)
+    values, bad = six_channels(recording)
+    timed = np.isfinite(recording.device_time)
+    time, values, bad, places = recording.device_time[timed], values[timed], bad[timed], places_of(recording, rate)[timed]
+    if (np.diff(places) < 1).any() or places[-1] - places[0] > _MOST_PLACES * len(places):
+        return time, values, bad, rate
+    at = places - places[0]
+    rows = np.full((int(at[-1]) + 1, 6), np.nan)
+    rows[at] = values
+    saturated = np.zeros(rows.shape, dtype=bool)
+    saturated[at] = bad
+    return np.interp(np.arange(len(rows)), at, time), rows, saturated, rate
 
 
 def rate_of(recording: Recording) -> float:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from skinfab.errors import InputError
 from skinfab.fingertip.nail.classify import NailModel
 from skinfab.fingertip.nail.histogram_model import HistogramModel
-from skinfab.fingertip.nail.labels import CHANNELS, rate_of, six_channels
+from skinfab.fingertip.nail.labels import CHANNELS, places_of, rate_of, six_channels
 from skinfab.fingertip.nail.phasors import SHORTEST, find_drive
 from skinfab.fingertip.nail.reader import Decision, Reader
 from skinfab.fingertip.nail.regress import Continuous, Regression
@@ -190,11 +190,12 @@ def decide_log(
     InputError
         As `NailWatch`.
     """
-    watch = NailWatch(model, recording.stream, samples=samples, every=every, regression=regression, rate_hz=rate_of(recording))
+    rate = rate_of(recording)
+    watch = NailWatch(model, recording.stream, samples=samples, every=every, regression=regression, rate_hz=rate)
     values, saturated = six_channels(recording)
     if not isinstance(model, HistogramModel):
         values = np.where(saturated, np.nan, values)
     time = recording.device_time - recording.device_time[np.isfinite(recording.device_time)][0]
-    rows = zip(values, recording.sequence.tolist(), time.tolist(), strict=True)
+    rows = zip(values, places_of(recording, rate).tolist(), time.tolist(), strict=True)
     told = [made for row, sequence, at in rows if (made := watch.take(row, sequence, at)) is not None]
     return told, watch.lost

@@ -77,8 +77,8 @@ class Prepared:
 
     def fit_published(self, rows: IntArray) -> HistogramModel:
         """The published model of some of the trials, each cut to the paper's 1024 readings, or to the shortest trial."""
-        samples = min(PUBLISHED_WINDOW, *(len(each.values) for each in self.trials))
-        windows = np.array([self.trials[k].values[:samples] for k in rows])
+        samples = min(PUBLISHED_WINDOW, *(len(_whole(each.values)) for each in self.trials))
+        windows = np.array([_whole(self.trials[k].values)[:samples] for k in rows])
         return fit_histograms(self.names, self.classes[rows], windows, rate_hz=self.rate_hz)
 
 
@@ -225,7 +225,13 @@ def judge(made: Prepared, splits: Sequence[Split], *, samples: int | None = WIND
     return Held(Confusion.of(truth, said, made.names), tuple(groups), right, both[:, 0], both[:, 1])
 
 
+def _whole(values: FloatArray) -> FloatArray:
+    """The rows that have all channels: a histogram does not mind what lies between them."""
+    return values[np.isfinite(values).all(axis=1)]
+
+
 def _by_histograms(model: HistogramModel, values: FloatArray) -> int:
+    values = _whole(values)
     count = len(values) // model.samples
     return int(modes(model.decide(values[: count * model.samples].reshape(count, model.samples, 6))[None])[0])
 

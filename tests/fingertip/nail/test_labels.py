@@ -102,7 +102,7 @@ def test_frames_without_a_time_are_none(table: Path) -> None:
     time[[0, 7]] = np.nan
     write_log(Recording.of_values(STREAM, np.ones((300, 3)), device_time=time, host_time=np.zeros(300)), table.parent / "a.csv")
     trials, _, _ = read_trials(table)
-    assert [len(each.values) for each in trials] == [99, 100]
+    assert [len(each.values) for each in trials] == [100, 100] and np.flatnonzero(np.isnan(trials[0].values[:, 0])).tolist() == [6]
 
 
 def test_a_rate_from_times() -> None:
@@ -112,3 +112,32 @@ def test_a_rate_from_times() -> None:
     assert rate_of(recording) == pytest.approx(1400, rel=0.01)
     with pytest.raises(InputError, match="give no rate"):
         rate_of(Recording.of_values(Stream("s", (Channel("Ax"),)), np.zeros((3, 1)), device_time=np.zeros(3)))
+
+
+@pytest.mark.parametrize("counted", [True, False])
+def test_lost_frames_keep_their_place(tmp_path: Path, counted: bool) -> None:
+    time = np.arange(300) / 1400
+    values = np.cos(2 * np.pi * 169 * time)[:, None] * np.ones(3)
+    kept = np.random.default_rng(0).uniform(size=300) > 0.1
+    kept[[0, 299]] = True
+    if counted:
+        all_of = Recording.of_values(STREAM, values, device_time=time)
+        parts = (all_of.device_time, all_of.host_time, all_of.sequence, all_of.values, all_of.valid, all_of.saturated)
+        write_log(Recording(STREAM, *(part[kept] for part in parts)), tmp_path / "a.csv")
+    else:  # a plain table: times alone tell it
+        rows = [f"{t:.6f},{v[0]:.6f},{v[1]:.6f},{v[2]:.6f}" for t, v in zip(time[kept], values[kept], strict=True)]
+        (tmp_path / "a.csv").write_text("time_s,Ax,Ay,Az\n" + "\n".join(rows) + "\n")
+    write_labels(tmp_path / "l.csv", [Label("a.csv", 0.0, 0.2, "pin")], simulated=True)
+    ((trial,), _, notes) = read_trials(tmp_path / "l.csv")
+    assert len(trial.values) == 280 and np.isnan(trial.values[:, 0]).tolist() == (~kept[:280]).tolist()
+    assert trial.values[kept[:280], 0] == pytest.approx(values[:280][kept[:280], 0], abs=1e-5)
+    assert any("frames are missing" in note for note in notes) == counted
+
+
+def test_a_trial_in_a_hole_is_told(tmp_path: Path) -> None:
+    time = np.concatenate([np.arange(300), np.arange(1400, 1700)]) / 1400
+    rows = [f"{t:.6f},1,2,3" for t in time]
+    (tmp_path / "a.csv").write_text("time_s,Ax,Ay,Az\n" + "\n".join(rows) + "\n")
+    write_labels(tmp_path / "l.csv", [Label("a.csv", 0.4, 0.6, "pin")], simulated=True)
+    with pytest.raises(InputError, match=r"has 0 of the 280 readings of its trial from 0.4 to 0.6 s; leave that row out"):
+        read_trials(tmp_path / "l.csv")
