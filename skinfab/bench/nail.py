@@ -30,6 +30,8 @@ Table = Sequence[Mapping[str, Any]]
 PUBLISHED, IMPROVED = "published", "improved"
 #: The sensor condition that the improved method has, and by which the two are compared.
 FULL = "AxAyAzGxGyGz"
+#: With fewer participants no corrected comparison of nine conditions (36 pairs) shows what the paper's ten do.
+LEAST_PARTICIPANTS = 6
 #: Parts of the time: the three tests, then the ablation; the window's lengths are the rest.
 _TESTS_DONE, _TERMS_DONE = 0.4, 0.8
 
@@ -47,8 +49,8 @@ class Row:
         The paper's mean; NaN where it is not printed.
     around : bool
         The paper says "around" of it.
-    within : bool
-        The means differ by less than the standard deviation; true where the paper has none.
+    within : float
+        1 where the means differ by no more than the deviation, else 0; NaN where the paper has none.
     simulated : bool
     """
 
@@ -59,7 +61,7 @@ class Row:
     deviation: float
     paper: float
     around: bool
-    within: bool
+    within: float
     simulated: bool = True
 
 
@@ -140,7 +142,7 @@ def run(
     # From here on only what the tables hold is used, so that charts and sentence cannot say anything else.
     table, pairs, terms = (read_csv(folder / f"nail{part}.csv") for part in ("", "_pairs", "_ablation"))
     windows = nail_window.run(folder, repeats=repeats, progress=part_of(progress, _TERMS_DONE, 1.0), protocol=protocol)
-    said = f"{sentence(table, pairs)} {windows['sentence']}"
+    said = f"{sentence(table, pairs, participants=protocol.participants)} {windows['sentence']}"
     notes = [
         f"simulated participants ({protocol.participants}, seed {seed}); what the simulator leaves out stands in docs/nail.md",
         *(f"{test}: {found}" for test, found in compared.items()),
@@ -169,10 +171,10 @@ def _rows(outcome: Outcome) -> list[Row]:
     for condition in CONDITIONS:
         mean, deviation = 100 * outcome.mean(condition), 100 * outcome.deviation(condition)
         paper = (around | ACCURACY[outcome.test]).get(condition, math.nan)
-        within = not abs(mean - paper) > deviation
+        within = math.nan if math.isnan(paper) else float(abs(mean - paper) <= deviation)
         rows.append(Row(outcome.test, condition, PUBLISHED, mean, deviation, paper, condition in around, within))
     mean, deviation = 100 * outcome.mean(IMPROVED), 100 * outcome.deviation(IMPROVED)
-    return [*rows, Row(outcome.test, FULL, IMPROVED, mean, deviation, math.nan, False, True)]
+    return [*rows, Row(outcome.test, FULL, IMPROVED, mean, deviation, math.nan, False, math.nan)]
 
 
 def _taken(outcome: Outcome) -> list[Taken]:
@@ -192,7 +194,7 @@ def _differences(test: str, found: Comparison) -> list[Difference]:
     ]
 
 
-def sentence(table: Table, pairs: Table) -> str:
+def sentence(table: Table, pairs: Table, *, participants: int) -> str:
     """How near it comes to the paper: every number in it comes from the tables."""
     rows = [row for row in table if row["method"] == PUBLISHED]
     known = [row for row in rows if row["paper"] is not None]
@@ -204,11 +206,16 @@ def sentence(table: Table, pairs: Table) -> str:
         )
         heads.append(f"{full['percent']:.1f} % of {test} (paper {full['paper']:.1f}, improved {better['percent']:.1f})")
     far = [f"{row['condition']} of {row['test']} {row['percent']:.0f} instead of {row['paper']:.0f}" for row in known if row not in near]
+    said = (
+        f"Nail, simulated: with all six channels the published method is right in {', '.join(heads)}; "
+        f"{len(near)} of {len(known)} accuracies that the paper gives are within the standard deviation of the simulated participants "
+        f"themselves (up to {max(row['deviation'] for row in known):.1f} points"
+        + (f'; {about} of the {len(known)} are only said to be "around 50 %"' if (about := sum(bool(r["around"]) for r in known)) else "")
+        + ")"
+        + (f", and these are not: {', '.join(far)}" if far else "")
+    )
+    if participants < LEAST_PARTICIPANTS:
+        return f"{said}; {participants} participants are too few to show which sensor conditions differ ({LEAST_PARTICIPANTS} at least)."
     printed = [row for row in pairs if row["paper"]]
     both = sum(bool(row["differs"]) for row in printed)
-    return (
-        f"Nail, simulated: with all six channels the published method is right in {', '.join(heads)}; "
-        f"{len(near)} of {len(known)} accuracies that the paper gives are within the participants' standard deviation"
-        + (f", and these are not: {', '.join(far)}" if far else "")
-        + f"; of {len(printed)} pairs of sensor conditions that differ in the paper {both} differ here."
-    )
+    return f"{said}; of {len(printed)} pairs of sensor conditions that differ in the paper {both} differ here."

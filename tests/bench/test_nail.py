@@ -74,12 +74,29 @@ def test_the_sentence_is_the_tables(ran: tuple[Path, dict[str, Any], list[float]
     table, pairs = read_csv(folder / "nail.csv"), read_csv(folder / "nail_pairs.csv")
     assert (folder / "nail.txt").read_text().splitlines()[0] == found["sentence"]
     windows = (folder / "nail_window.txt").read_text().splitlines()[0]
-    assert found["sentence"] == f"{sentence(table, pairs)} {windows}"
+    assert found["sentence"] == f"{sentence(table, pairs, participants=3)} {windows}"
     known = [row for row in table if row["paper"] is not None]
     assert len(known) == 8 and " of 8 accuracies" in found["sentence"]
     for row in known:
         row.update(percent=row["paper"], within=1)
-    assert "are not" not in sentence(table, pairs) and "8 of 8" in sentence(table, pairs)
+    said = sentence(table, pairs, participants=10)
+    assert "are not" not in said and "8 of 8" in said and "around" not in said
+
+
+def test_the_yardstick_and_what_few_participants_cannot_show_are_said(ran: tuple[Path, dict[str, Any], list[float]]) -> None:
+    folder, found, _ = ran
+    table, pairs = read_csv(folder / "nail.csv"), read_csv(folder / "nail_pairs.csv")
+    widest = max(row["deviation"] for row in table if row["paper"] is not None)
+    assert f"(up to {widest:.1f} points)" in found["sentence"]
+    assert (
+        "3 participants are too few to show which sensor conditions differ" in found["sentence"] and "differ here" not in found["sentence"]
+    )
+    assert "differ here" in sentence(table, pairs, participants=6)
+    table[0]["around"] = 1
+    assert '1 of the 8 are only said to be "around 50 %"' in sentence(table, pairs, participants=10)
+    # No figure of the paper's, nothing to be within: the improved method's row and that of AxAyAz.
+    assert all((row["within"] is None) == (row["paper"] is None) for row in table)
+    assert sum(row["within"] is None for row in table) == 2
 
 
 def test_the_improved_method_is_asked_about_the_same_trials(ran: tuple[Path, dict[str, Any], list[float]]) -> None:
