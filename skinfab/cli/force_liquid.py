@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import argparse
+import csv
+import io
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,7 +18,10 @@ if TYPE_CHECKING:
     from skinfab.fingertip.force.liquid import Stirred
     from skinfab.fingertip.force.logs import WrenchLog
 
-_RUN = ("liquid.png", "result.json")
+_RUN = ("liquid.csv", "liquid.png", "result.json")
+_HEAD = ("log", "answer", "chance", "wander_mm", "period_s", "pivot_x_mm", "pivot_y_mm", "pivot_z_mm", "simulated")
+#: A weight is at most so far from the hand's origin, mm, and at least so heavy, N.
+_REACH_MM, _LEAST_N = 500.0, 0.3
 #: Water that swings in the simulated cups, g.
 _WATER_G = (0, 20, 100)
 
@@ -37,9 +42,9 @@ def add_parsers(topics: Mapping[str, argparse._SubParsersAction[argparse.Argumen
         metavar="LOG",
         nargs="+",
         type=Path,
-        help="from when the stick was taken out, held still for 2 s or more: time, Fx, Fy, Fz (N), Mx, My, Mz (N mm) of the whole hand",
+        help="from when the stick was taken out, held still for 3 s or more: time, Fx, Fy, Fz (N), Mx, My, Mz (N mm) of the whole hand",
     )
-    add_output(p, "figure and result")
+    add_output(p, "table, figure and result")
     finish(p, run)
 
 
@@ -71,20 +76,25 @@ def run(args: argparse.Namespace) -> int:
     from skinfab.fingertip.force.liquid import FALSE_ALARM, stirred
     from skinfab.fingertip.force.liquid_figure import draw_paths
     from skinfab.fingertip.force.logs import read_wrench
+    from skinfab.fingertip.force.wrench import require_nmm
     from skinfab.staging import staged_folder
 
     require_apart(args.output, _RUN, args.logs)
     logs = [read_wrench(path) for path in args.logs]
+    for log in logs:
+        if not log.units_said:
+            require_nmm(log.force, log.moment, reach_mm=_REACH_MM, least_force=_LEAST_N, where=log.name)
     found = [stirred(log) for log in logs]
     notes = [note for log in logs for note in log.notes]
     simulated = any(log.simulated for log in logs)
-    result = {
+    result: dict[str, Any] = {
         "simulated": simulated,
         "false_alarm": FALSE_ALARM,
         "cups": [_facts(log, each) for log, each in zip(logs, found, strict=True)],
         "notes": notes,
     }
     with staged_folder(args.output) as folder:
+        (folder / "liquid.csv").write_text(_csv(result["cups"]))
         draw_paths([(log.name, each) for log, each in zip(logs, found, strict=True)], folder / "liquid.png", simulated=simulated)
         (folder / "result.json").write_text(json.dumps(result, indent=1, allow_nan=False) + "\n")
     if args.json:
@@ -93,13 +103,24 @@ def run(args: argparse.Namespace) -> int:
     steps.say(notes)
     for log, each in zip(logs, found, strict=True):
         swings = f", swings with a period of {each.period_s:.2f} s" if each.liquid else ""
-        print(f"{log.name}{' (simulated)' if log.simulated else ''}: {_word(each)}; its line wanders by {each.wander_mm:.2f} mm{swings}")
+        still = "; a liquid cannot be told: hold still after stirring" if each.moves else ""
+        made = " (simulated)" if log.simulated else ""
+        print(f"{log.name}{made}: {each.answer}{still}; its line wanders by {each.wander_mm:.2f} mm{swings}")
     print(f"{args.output}: {', '.join(_RUN)}")
     return 0
 
 
-def _word(each: Stirred) -> str:
-    return "liquid" if each.liquid else "solid or empty"
+def _csv(cups: Sequence[Mapping[str, Any]]) -> str:
+    text = io.StringIO()
+    rows = csv.writer(text, lineterminator="\n")
+    rows.writerow(_HEAD)
+    for each in cups:
+        period = "" if each["period_s"] is None else f"{each['period_s']:.4g}"
+        pivot = [f"{x:.5g}" for x in each["pivot_mm"] or ()] or [""] * 3
+        rows.writerow(
+            [each["log"], each["answer"], f"{each['chance']:.3g}", f"{each['wander_mm']:.4g}", period, *pivot, int(each["simulated"])]
+        )
+    return text.getvalue()
 
 
 def _facts(log: WrenchLog, each: Stirred) -> dict[str, Any]:
@@ -110,6 +131,7 @@ def _facts(log: WrenchLog, each: Stirred) -> dict[str, Any]:
         "sha256": log.sha256,
         "simulated": log.simulated,
         "label": log.label or None,
+        "answer": each.answer,
         "liquid": each.liquid,
         "chance": each.chance,
         "wander_mm": each.wander_mm,
