@@ -118,7 +118,11 @@ class NailWatch:
         self.every, self.lost = max(every, 1), 0
         self._rate = rate
         self._columns = [stream.names.index(name) if name in stream.names else -1 for name in CHANNELS]
-        self._reader = _Published(model) if isinstance(model, HistogramModel) else Reader(model, self.samples, regression=regression)
+        self._reader: _Published | Reader
+        if isinstance(model, HistogramModel):
+            self._reader = _Published(model)
+        else:  # by the stream's own rate, by which its motor is found: another one turns a long window's ends against each other
+            self._reader = Reader(model, self.samples, regression=regression, rate_hz=rate)
         self.drive_hz = math.nan if isinstance(model, HistogramModel) else model.drive_hz
         # Twice as long as needed, written twice: so the newest readings always lie in one piece.
         self._size = max(self.samples, _FOLLOWED)

@@ -61,6 +61,8 @@ class Reader:
         Readings of a window.
     regression : Regression, optional
         What `continuous` comes from.
+    rate_hz : float, optional
+        Readings a second; those of the model where it is left out.
 
     Raises
     ------
@@ -68,8 +70,9 @@ class Reader:
         The window is too short.
     """
 
-    def __init__(self, model: NailModel, samples: int, *, regression: Regression | None = None) -> None:
+    def __init__(self, model: NailModel, samples: int, *, regression: Regression | None = None, rate_hz: float | None = None) -> None:
         self.model, self.samples, self.regression = model, samples, regression
+        self._rate = rate_hz or model.rate_hz
         self._count = max(samples // BLOCK, 1)
         self._length = samples // self._count
         self._weights: OrderedDict[int, ComplexArray] = OrderedDict()
@@ -123,7 +126,7 @@ class Reader:
         silent = self._used & ~np.isfinite(window).any(axis=0)
         if silent.any():
             return self._without(silent, window, drive_hz)
-        drive, _ = turned_phasors(window[None], self.model.rate_hz, drive_hz, self.model.reference)
+        drive, _ = turned_phasors(window[None], self._rate, drive_hz, self.model.reference)
         gone = ~np.isfinite(drive[0]) & self._used
         return self._without(gone, window, drive_hz) if gone.any() else self._decide(np.where(self._used, drive, 0.0))
 
@@ -132,14 +135,14 @@ class Reader:
         if key not in self._others:
             model = self.model.without(gone)
             regression = None if self.regression is None else self.regression.of(model)
-            self._others[key] = Reader(model, self.samples, regression=regression)
+            self._others[key] = Reader(model, self.samples, regression=regression, rate_hz=self._rate)
         found = self._others[key].decide(window, drive_hz=drive_hz)
         return replace(found, missing=found.missing + int(gone.sum()))
 
     def _weights_at(self, drive_hz: float) -> ComplexArray:
         key = round(drive_hz / _STEP_HZ)
         if key not in self._weights:
-            self._weights[key] = lock_in_weights(self._length, self.model.rate_hz, key * _STEP_HZ)
+            self._weights[key] = lock_in_weights(self._length, self._rate, key * _STEP_HZ)
             if len(self._weights) > _KEPT:
                 self._weights.popitem(last=False)
         return self._weights[key]

@@ -126,3 +126,14 @@ def test_streams_that_do_not_fit(model: NailModel) -> None:
         NailWatch(model, Stream("s", (Channel("U"),), 1400.0), samples=33, every=8)
     with pytest.raises(InputError, match="a window of 7 readings is none; give 8 to 16384"):
         NailWatch(model, nail_stream(), samples=7, every=8)
+
+
+def test_a_rate_that_is_a_little_off(one: Session, model: NailModel) -> None:
+    """A clock that is 4 % fast says 1456 readings a second and a motor 4 % faster: the very same readings."""
+    values = one.rounds.readings.reshape(-1, 6)
+    fast = Recording.of_values(nail_stream(), values, device_time=np.arange(len(values)) / (1.04 * RATE_HZ))
+    settings = {"samples": 256, "every": 512 // 4}
+    own, off = (decide_log(model, each, **settings)[0] for each in (log(values), fast))
+    same = [a.decision.label == b.decision.label for a, b in zip(own, off, strict=True) if a.decision and b.decision]
+    assert len(same) > 20 and np.mean(same[2:]) > 0.95  # the first come before the motor was found
+    assert off[-1].drive_hz == pytest.approx(1.04 * own[-1].drive_hz, abs=0.3)
