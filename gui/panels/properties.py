@@ -10,6 +10,7 @@ from gui.jobs.background import Background
 from gui.panels.document_form import DocumentForm
 from gui.panels.piece_facts import PieceFacts
 from gui.panels.sensor_form import SensorForm
+from gui.scale import px
 from gui.state.derived import Derived
 from gui.state.profiles import ProfileShelf
 from gui.state.selection import Target
@@ -48,7 +49,7 @@ class PropertiesPanel(ttk.Frame):
         super().__init__(master, name="properties", padding=4)
         self._session = session
         self.title = tk.StringVar(self)
-        ttk.Label(self, textvariable=self.title, style="Title.TLabel", name="title").pack(anchor="w")
+        ttk.Label(self, textvariable=self.title, style="Title.TLabel", wraplength=px(self, 290), name="title").pack(anchor="w")
         self._forms: dict[str, SensorForm | PieceFacts | DocumentForm] = {
             "sensor": SensorForm(self, session, shelf, background, complain=complain),
             "piece": PieceFacts(self, session, derived),

@@ -120,5 +120,7 @@ def test_another_printer_is_chosen(root, session, panel):
 def test_several_selected_sensors_are_counted(root, session, panel):
     session.select(Target(piece="P1", sensor="C1", also=("C2", "C9")))
     assert panel.title.get() == "C1: contact-spiral on P1, and 1 more", "C9 is gone"
+    root.update()
+    assert panel.nametowidget("title").winfo_reqwidth() <= 300, "a longer one goes on in the next line"
     session.select(Target(piece="P1", sensor="C2"))
     assert panel.title.get() == "C2: contact-spiral on P1"
