@@ -171,5 +171,6 @@ def sentence(table: Sequence[Mapping[str, Any]]) -> str:
         f"{old['angle_deg']:.1f} degrees and {old['offset_mm']:.2f} mm off on average, in {old['ms']:.2f} ms (the seed: {SEED_MS[0]:g} to "
         f"{SEED_MS[1]:g} ms on a core of 3 GHz); {new['method']} after {most} images reads all, {new['angle_deg']:.1f} degrees and "
         f"{new['offset_mm']:.2f} mm off, in {new['ms']:.2f} ms; ridge alone is {plain['offset_mm']:.2f} mm off in {plain['ms']:.2f} ms, "
-        f"{image['method']} {image['offset_mm']:.2f} mm in {image['ms']:.2f} ms. Pins are the default because on real images (docs/optical.md) the image is twice as far off."
+        f"{image['method']} {image['offset_mm']:.2f} mm in {image['ms']:.2f} ms. "
+        "Pins are the default because on real images the image is twice as far off."
     )
