@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,7 +25,7 @@ IntArray = NDArray[np.int64]
 
 NOTHING = "nothing"
 #: What a term is called, and the scene without it. The ends of the ranges are no term: nothing reaches them (see docs/nail.md).
-TERMS: Mapping[str, Mapping[str, float]] = {
+TERMS: Mapping[str, Mapping[str, Any]] = {
     NOTHING: {},
     "scatter of the place": {"place_mm": 0.0},
     "scatter of the turn": {"turn_rad": 0.0},

@@ -28,10 +28,28 @@ def add_options(p: argparse.ArgumentParser) -> None:
     p.add_argument("--training", metavar="N", type=steps.counting, default=5, help="trials to learn from, of each class (default: 5)")
     p.add_argument("--rounds", metavar="N", type=steps.counting, default=10, help="of the test, over all patterns (default: 10)")
     p.add_argument("--samples", metavar="N", type=steps.counting, default=1024, help="readings a trial (default: 1024, 0.73 s)")
+    p.add_argument(
+        "--force",
+        metavar="LOW:HIGH",
+        type=_forces,
+        help="N, drawn log-uniform between them, so that a force can be learned (default: the paper's, 0.98 N within a fifth)",
+    )
     p.add_argument("--seed", type=steps.seed, default=0, help="the same seed gives the same logs (default: 0)")
     p.add_argument("-o", "--output", metavar="DIR", type=Path, required=True, help=f"folder for the logs and {TABLE}")
     p.add_argument("--json", action="store_true", help="print the result as one JSON object and nothing else")
     p.set_defaults(run=run)
+
+
+def _forces(text: str) -> tuple[float, float]:
+    """Two forces in N, for argparse."""
+    low, _, high = text.partition(":")
+    try:
+        forces = steps.positive(low), steps.positive(high)
+    except argparse.ArgumentTypeError:
+        forces = (1.0, 0.0)
+    if forces[0] > forces[1]:
+        raise argparse.ArgumentTypeError(f"{text!r} is not LOW:HIGH in N, such as 0.3:3")
+    return forces
 
 
 def run(args: argparse.Namespace) -> int:
@@ -39,15 +57,17 @@ def run(args: argparse.Namespace) -> int:
     from skinfab.fingertip.nail.labels import write_labels
     from skinfab.fingertip.nail.patterns import TESTS
     from skinfab.fingertip.nail.protocol import Protocol, session
+    from skinfab.fingertip.nail.simulator import Scene
     from skinfab.progress import terminal_progress
     from skinfab.staging import staged_folder
 
     protocol = Protocol(args.participants, args.training, args.rounds, 1, args.samples)
+    scene = Scene(force_n=args.force)
     labels: list[Label] = []
     with staged_folder(args.output) as folder, terminal_progress(quiet=args.json) as progress:
         for number in range(1, args.participants + 1):
             progress((number - 1) / args.participants, f"participant {number} of {args.participants}")
-            labels += _written(folder, session(args.test, number, protocol=protocol, seed=args.seed))
+            labels += _written(folder, session(args.test, number, protocol=protocol, scene=scene, seed=args.seed))
         write_labels(folder / TABLE, labels, simulated=True)
         files = sorted(file.name for file in folder.iterdir())
         progress(1.0, "done")

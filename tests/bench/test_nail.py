@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from skinfab.bench import nail, nail_ablation
+from skinfab.bench import nail, nail_ablation, nail_force
 from skinfab.bench.flatten import read_csv
 from skinfab.bench.nail import FULL, IMPROVED, PUBLISHED, run, sentence
 from skinfab.bench.nail_ablation import NOTHING, TERMS, ablate
@@ -40,6 +40,7 @@ def test_tables_charts_and_a_sentence_are_written(ran: tuple[Path, dict[str, Any
         "nail_pairs.csv",
         "nail_ablation.csv",
         "nail_confusion.csv",
+        "nail_force.csv",
         "nail.txt",
         *charts,
     }
@@ -47,7 +48,7 @@ def test_tables_charts_and_a_sentence_are_written(ran: tuple[Path, dict[str, Any
     assert seen == sorted(seen) and 0 <= seen[0] and seen[-1] <= 1
     json.dumps(found, allow_nan=False)
     assert found["simulated"] is True
-    for name in ("nail.csv", "nail_pairs.csv", "nail_ablation.csv"):
+    for name in ("nail.csv", "nail_pairs.csv", "nail_ablation.csv", "nail_force.csv"):
         assert all(row["simulated"] == 1 for row in read_csv(folder / name))
 
 
@@ -74,7 +75,7 @@ def test_the_sentence_is_the_tables(ran: tuple[Path, dict[str, Any], list[float]
     table, pairs = read_csv(folder / "nail.csv"), read_csv(folder / "nail_pairs.csv")
     assert (folder / "nail.txt").read_text().splitlines()[0] == found["sentence"]
     windows = (folder / "nail_window.txt").read_text().splitlines()[0]
-    assert found["sentence"] == f"{sentence(table, pairs, participants=3)} {windows}"
+    assert found["sentence"] == f"{sentence(table, pairs, participants=3)} {nail_force.sentence(found['forces'])} {windows}"
     known = [row for row in table if row["paper"] is not None]
     assert len(known) == 8 and " of 8 accuracies" in found["sentence"]
     for row in known:
@@ -115,7 +116,7 @@ def test_the_papers_pairs_are_pairs(ran: tuple[Path, dict[str, Any], list[float]
 
 def test_every_term_is_one_of_the_scene() -> None:
     changed = [name for without in TERMS.values() for name in without]
-    assert set(changed) == set(vars(Scene())) - {"drive_hz", "range_g", "range_dps"}
+    assert set(changed) == set(vars(Scene())) - {"drive_hz", "force_n", "range_g", "range_dps"}
 
 
 def test_leaving_nothing_out_changes_nothing_and_the_place_counts() -> None:

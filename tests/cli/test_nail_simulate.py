@@ -56,6 +56,14 @@ def test_labels_say_what_was_aimed_at_and_where_it_lay(folder: Path) -> None:
         assert 0 < np.hypot(each.true_x_mm - each.x_mm, each.true_y_mm - each.y_mm) < 6
 
 
+def test_forces_are_drawn_where_they_are_asked_for(tmp_path: Path) -> None:
+    assert main(["nail", "simulate", "--test", "pins6", *SMALL, "--force", "0.3:3", "-o", str(tmp_path / "out")]) == 0
+    trials, _, _ = read_trials(tmp_path / "out/labels.csv")
+    forces = np.array([each.label.force_n for each in trials if each.label.label != "none"])
+    assert 0.3 <= forces.min() < 0.5 and 2 < forces.max() <= 3
+    assert np.median(forces) == pytest.approx(np.sqrt(0.9), rel=0.4)
+
+
 def test_every_file_says_that_it_is_simulated(folder: Path) -> None:
     assert read_table(folder / "participant-1.csv").simulated
     assert (folder / "labels.csv").read_text().startswith("# simulated: true\n")
@@ -85,6 +93,8 @@ def test_the_documents_next_command_works_on_what_was_simulated(folder: Path, tm
     ("words", "status", "says"),
     [
         (["--participants", "0"], 2, "whole number from 1 up"),
+        (["--force", "3:0.3"], 2, "not LOW:HIGH in N"),
+        (["--force", "1"], 2, "not LOW:HIGH in N"),
         (["--test", "edges5"], 2, "invalid choice"),
         (["--sampels", "4"], 2, "did you mean --samples?"),
     ],

@@ -69,6 +69,8 @@ class Scene:
         How much it is turned.
     force_scatter : float
         As a part of the wanted force.
+    force_n : (float, float) or None
+        Forces are drawn log-uniform from the first to the second instead of scattering about the paper's.
     person_scatter : float
         Of mass, inertia and stiffnesses among participants, as a part (log-normal).
     contact_delay_s : float
@@ -85,6 +87,7 @@ class Scene:
     place_mm: float = 1.05
     turn_rad: float = math.radians(12.5)
     force_scatter: float = 0.10
+    force_n: tuple[float, float] | None = None
     person_scatter: float = 0.16
     contact_delay_s: float = 2.5e-4
     gravity_g: float = 1.0
@@ -150,6 +153,8 @@ def touch(pattern: Pattern | None, rng: np.random.Generator, scene: Scene | None
     turned = scene.turn_rad * float(rng.standard_normal())
     # Beyond these the paper's participants tried again.
     force = FORCE_N * float(np.clip(1 + scene.force_scatter * rng.standard_normal(), 0.8, 1.2))
+    if scene.force_n is not None:
+        force = scene.force_n[0] * (scene.force_n[1] / scene.force_n[0]) ** float(rng.uniform())
     if pattern is None:
         return Touch(None, math.nan, math.nan, math.nan, 0.0, scene.drive_hz)
     x, y = pattern.x_mm + float(off[0]), pattern.y_mm + float(off[1])
