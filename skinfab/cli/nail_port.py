@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 _WAIT_S = 0.2
 #: A contact is said when so many decisions in a row agree: of windows of 33 readings, 8 apart, the fifth shares none with the first.
 _AGREE = 5
+_OFF = "the motor does not turn"
 #: Edges of the histogram of latencies, ms.
 _EDGES_MS = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0)
 
@@ -101,6 +102,9 @@ class _Speaker:
 
     def hear(self, told: Told) -> None:
         """Take a decision; print it where it is news."""
+        if not self._quiet and told.turning is False and self._said != _OFF:
+            self._said = _OFF
+            print(f"{told.time_s:9.3f} s  {_OFF}", flush=True)
         if self._quiet or (decision := told.decision) is None:
             return
         self._agree = self._agree + 1 if decision.label == self._last else 1

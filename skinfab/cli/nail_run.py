@@ -61,13 +61,21 @@ def run(args: argparse.Namespace) -> int:
         told, facts = _from_port(args, content)
     else:
         told, facts = _from_log(args, content)
-    from skinfab.errors import InputError
+    from skinfab.errors import InputError, RefusedError
 
     decided = [each for each in told if each.decision is not None]
+    if not decided and any(each.turning is False for each in told):
+        raise RefusedError(
+            f"{args.port or args.log}: the motor does not turn, nothing that vibrates stands out of the noise in {len(told)} windows; "
+            "switch it on, and look at the sensor's wires"
+        )
+    if not told:
+        raise InputError(
+            f"{args.port or args.log} has {facts['frames']} frames and a window {facts['window_readings']}; give a shorter --window"
+        )
     if not decided:
         raise InputError(
-            f"{args.port or args.log}: nothing could be decided in {len(told)} windows; there must be {facts['window_readings']} readings "
-            "in a row, of two channels at least"
+            f"{args.port or args.log}: nothing could be decided in any of {len(told)} windows; two channels at least must have readings"
         )
     result = _facts(args, content, told, facts)
     _write(args.output, told, names, result)
@@ -154,6 +162,8 @@ def _facts(args: argparse.Namespace, content: Any, told: Sequence[Told], facts: 
     left_out = float(np.mean([each.left_out for each in told]))
     if left_out > 0.01:
         notes.append(f"{left_out:.1%} of the readings are missing or saturated and were left out")
+    if (off := sum(each.turning is False for each in told) / len(told)) > 0:
+        notes.append(f"the motor did not turn in {off:.1%} of the windows, which were not decided")
     if (strange := sum(each.strange for each in decisions) / len(decisions)) > 0.2:
         notes.append(
             f"{strange:.0%} of the windows are like nothing the model learned from; is it the same finger, and the sensor where it was?"

@@ -145,9 +145,18 @@ def test_input_that_cannot_be_used(logs: Path, model: Path, tmp_path: Path, caps
         (["run", log, log, "-o", out], "not a whole model"),
         (["run", str(model), str(logs / "labels.csv"), "-o", out], "labels.csv"),
         (["run", str(model), log, "--window", "7", "-o", out], "a window of 7 readings is none"),
-        (["run", str(model), log, "--window", "16000", "-o", out], "nothing could be decided"),
+        (["run", str(model), log, "--window", "16000", "-o", out], "give a shorter --window"),
     ):
         assert main(["nail", *arguments]) == 1
         said = capsys.readouterr()
         assert says in said.err and said.err.count("\n") == 1 and said.out == ""
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_motor_that_is_off_is_refused(model: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    capsys.readouterr()
+    still = np.array([0, 0, 1, 0, 0, 0]) + np.array([0.01] * 3 + [0.5] * 3) * np.random.default_rng(0).standard_normal((600, 6))
+    rows = "\n".join(f"{k / 1400:.6f}," + ",".join(f"{v:.5f}" for v in row) for k, row in enumerate(still))
+    (tmp_path / "off.csv").write_text("time_s,Ax,Ay,Az,Gx,Gy,Gz\n" + rows + "\n")
+    assert main(["nail", "run", str(model), str(tmp_path / "off.csv"), "-o", str(tmp_path / "o")]) == 3
+    assert "the motor does not turn" in capsys.readouterr().err and not (tmp_path / "o").exists()

@@ -150,3 +150,10 @@ def test_lost_frames_that_are_closed_up_make_the_phase_jump(usual: list[Session]
         holed = np.where(kept[:, None], windows, np.nan)
         kept_places.append(float((model.decide(holed, drive_hz=frequency(holed, model)).classes == each.rounds.classes).mean()))
     assert mean(closed) < mean(kept_places) - 0.15 and mean(kept_places) > mean([improved(each) for each in usual]) - 0.06
+
+
+def test_a_motor_that_is_off_is_not_read_as_a_touch(usual: list[Session]) -> None:
+    model = learn(usual[0])
+    still = np.random.default_rng(0).normal(scale=0.02 * np.abs(usual[0].training.readings).max(axis=(0, 1, 2)), size=(60, 256, 6))
+    assert model.decide(still).contact.mean() > 0.5  # what a model that only compares says of noise
+    assert np.isnan(find_drive(still, RATE_HZ)).all() and np.isfinite(find_drive(asked(usual[0]), RATE_HZ)).all()

@@ -7,7 +7,7 @@ keeps its phase; readings that are missing or saturated are left out of the fit.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +16,7 @@ from skinfab.errors import InputError
 from skinfab.fingertip.nail.classify import NailModel
 from skinfab.fingertip.nail.histogram_model import HistogramModel
 from skinfab.fingertip.nail.labels import CHANNELS, places_of, rate_of, six_channels
-from skinfab.fingertip.nail.phasors import SHORTEST, find_drive
+from skinfab.fingertip.nail.phasors import FIND_SHORTEST, SHORTEST, find_drive, turns
 from skinfab.fingertip.nail.reader import Decision, Reader
 from skinfab.fingertip.nail.regress import Continuous, Regression
 from skinfab.readout.frame import Frame, Recording, Stream
@@ -42,16 +42,19 @@ class Told:
     time_s : float
         Device time of the window's last reading.
     decision : Decision or None
-        None where the window could not be decided.
+        None where the window could not be decided, or the motor did not turn.
     drive_hz : float
     left_out : float
         Part of the window's readings that are missing or saturated.
+    turning : bool, optional
+        Did the motor turn? None before there were readings enough to tell.
     """
 
     time_s: float
     decision: Decision | None
     drive_hz: float
     left_out: float
+    turning: bool | None = None
 
 
 class _Published:
@@ -90,6 +93,8 @@ class NailWatch:
     ----------
     lost : int
         Frames that were missing by the device's count.
+    turning : bool, optional
+        Does the motor turn? None before there are readings enough to tell.
     """
 
     def __init__(
@@ -129,6 +134,7 @@ class NailWatch:
         self._rows = np.full((2 * self._size, 6), np.nan)
         self._count = self._since = 0
         self._sequence: int | None = None
+        self.turning: bool | None = None
 
     def step(self, frame: Frame) -> Told | None:
         """Take a frame; a decision where it is time for one."""
@@ -142,6 +148,7 @@ class NailWatch:
             gap = sequence - self._sequence - 1
             if gap < 0:  # the device began anew, so that phases before it mean nothing
                 self._count = self._since = 0
+                self.turning = None
                 gap = 0
             self.lost += gap
             for _ in range(min(gap, self._size)):
@@ -158,7 +165,7 @@ class NailWatch:
         self._rows[at] = self._rows[at + self._size] = row
         self._count += 1
         self._since += 1
-        if self._count % _AGAIN == 0 and self._count >= _FOLLOWED and not self._published:
+        if self._count % _AGAIN == 0:
             self._follow()
 
     def _newest(self, count: int) -> FloatArray:
@@ -166,22 +173,26 @@ class NailWatch:
         return self._rows[end - count : end]
 
     def _follow(self) -> None:
-        newest = self._newest(_FOLLOWED)
-        if np.isfinite(newest).any(axis=1).mean() < 0.5:
+        newest = self._newest(min(self._count, _FOLLOWED))
+        if min(np.isfinite(each).any(axis=1).mean() for each in (newest, newest[-FIND_SHORTEST:])) < 0.5:
             return  # mostly a gap: what was known before is better
         found = float(find_drive(newest[None], self._rate)[0])
-        if math.isfinite(found):
+        # The newest readings alone say that it was switched off just now.
+        self.turning = math.isfinite(found) and bool(turns(newest[None, -FIND_SHORTEST:], self._rate, found)[0])
+        if self.turning and self._count >= _FOLLOWED and not self._published:
             self.drive_hz = found
 
     def _decided(self, time_s: float) -> Told:
         window = self._newest(self.samples)
         used = [k for k, column in enumerate(self._columns) if column >= 0]
         left_out = float(np.isnan(window[:, used]).mean())
+        if self.turning is False:
+            return Told(time_s, None, math.nan, left_out, False)
         try:
             decision = self._reader.decide(window, drive_hz=self.drive_hz)
         except InputError:  # too little in this window; the next one may do
             decision = None
-        return Told(time_s, decision, self.drive_hz, left_out)
+        return Told(time_s, decision, self.drive_hz, left_out, self.turning)
 
 
 def decide_log(
@@ -202,4 +213,7 @@ def decide_log(
     time = recording.device_time - recording.device_time[np.isfinite(recording.device_time)][0]
     rows = zip(values, places_of(recording, rate).tolist(), time.tolist(), strict=True)
     told = [made for row, sequence, at in rows if (made := watch.take(row, sequence, at)) is not None]
+    known = next((k for k, each in enumerate(told) if each.turning is not None), 0)
+    if told and told[known].turning is False:  # nor did it turn before that could be told
+        told[:known] = [replace(each, decision=None, drive_hz=math.nan, turning=False) for each in told[:known]]
     return told, watch.lost

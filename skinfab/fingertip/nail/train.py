@@ -138,7 +138,7 @@ def _drive(trial: Trial, values: FloatArray, rate: float) -> float:
         raise InputError(f"{where}: {len(values)} readings are too few to find the motor's frequency in; give it with --drive")
     found = float(find_drive(values[None], rate)[0])
     if not np.isfinite(found):
-        raise InputError(f"{where}: nothing vibrates; was the motor on?")
+        raise InputError(f"{where}: the motor does not turn: nothing that vibrates stands out of the noise; was it on?")
     return found
 
 

@@ -137,3 +137,15 @@ def test_a_rate_that_is_a_little_off(one: Session, model: NailModel) -> None:
     same = [a.decision.label == b.decision.label for a, b in zip(own, off, strict=True) if a.decision and b.decision]
     assert len(same) > 20 and np.mean(same[2:]) > 0.95  # the first come before the motor was found
     assert off[-1].drive_hz == pytest.approx(1.04 * own[-1].drive_hz, abs=0.3)
+
+
+@pytest.mark.parametrize("spread", [0.0, 1.0])
+def test_a_motor_that_is_off_decides_nothing(one: Session, model: NailModel, spread: float) -> None:
+    rng = np.random.default_rng(3)
+    off = np.array([0.1, 0.2, 0.96, 0.0, 0.0, 0.0]) + spread * np.array([0.02] * 3 + [2.0] * 3) * rng.standard_normal((4096, 6))
+    told, _ = decide_log(model, log(off), samples=33, every=8)
+    assert len(told) > 500 and all(each.decision is None and each.turning is False and np.isnan(each.drive_hz) for each in told)
+    both = np.concatenate([one.rounds.readings[:2, 0].reshape(-1, 6), off])  # switched off after 1024 readings
+    told, _ = decide_log(model, log(both), samples=33, every=8)
+    at = [(round(each.time_s * RATE_HZ), each.decision) for each in told]
+    assert all(decision is not None for k, decision in at if k < 1024) and all(decision is None for k, decision in at if k > 1024 + 128)

@@ -79,8 +79,10 @@ def test_short_trials_need_the_motors_frequency(pins: list[Trial]) -> None:
 
 
 def test_what_cannot_be_learned(pins: list[Trial]) -> None:
-    with pytest.raises(InputError, match="nothing vibrates; was the motor on"):
-        prepare([replace(pins[0], values=np.ones((256, 6)))])
+    noise = np.random.default_rng(0).normal(size=(256, 6))
+    for off in (np.ones((256, 6)), np.array([0.0, 0.0, 1.0, 0.0, 0.0, 0.0]) + 0.01 * noise):
+        with pytest.raises(InputError, match="the motor does not turn: nothing that vibrates stands out of the noise; was it on"):
+            prepare([replace(pins[0], values=off)])
     with pytest.raises(InputError, match="record all of them at one rate"):
         prepare([pins[0], replace(pins[1], rate_hz=700.0)])
     single = [next(each for each in pins if each.label.label == name) for name in dict.fromkeys(each.label.label for each in pins)]
