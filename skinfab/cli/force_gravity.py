@@ -137,17 +137,18 @@ def _one(path: Path, args: argparse.Namespace) -> tuple[Found, list[str]]:
     from skinfab.fingertip.force.gravity import centre_of_gravity, published_centre, require_certain
     from skinfab.fingertip.force.logs import read_wrench
     from skinfab.fingertip.force.mass import fit_mass
-    from skinfab.fingertip.force.poses import poses_of
+    from skinfab.fingertip.force.poses import poses_of, require_alive
     from skinfab.fingertip.force.wrench import require_nmm
 
     log = read_wrench(path)
     notes = list(log.notes)
     try:
+        require_alive(log)
         poses = poses_of(log)
         notes += poses.notes
         if not log.units_said:
             require_nmm(poses.force, poses.moment, reach_mm=_HAND_MM, least_force=0.0, where=log.name)
-        centre = centre_of_gravity(poses.force, poses.moment, poses.covariance)
+        centre = centre_of_gravity(poses.force, poses.moment, poses.covariance, freedom=poses.freedom)
         centre = replace(centre, covariance=centre.covariance + args.place_sd**2 * np.eye(3))
         require_certain(centre, poses.force, worst_sd_mm=args.max_sd)
     except (InputError, RefusedError) as fault:
@@ -159,7 +160,7 @@ def _one(path: Path, args: argparse.Namespace) -> tuple[Found, list[str]]:
         )
     published, mass = None, None
     try:
-        published = published_centre(poses.force, poses.moment, poses.covariance)
+        published = published_centre(poses.force, poses.moment, poses.covariance, freedom=poses.freedom)
     except RefusedError as fault:
         notes.append(f"{log.name}, as published: {fault}")
     try:

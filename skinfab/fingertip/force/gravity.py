@@ -9,6 +9,7 @@ moment both have errors, so that the point of largest likelihood is that of a re
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -28,6 +29,10 @@ MEET_CHANCE = 0.001
 #: Of an eigenvalue beside the largest one: below, there are too few poses, or all alike.
 _SINGULAR = 1e-9
 _STEPS, _SETTLED = 100, 1e-7
+#: Of an estimated covariance of three components: one more than they are.
+_SPENT = 4
+#: The part of the errors that an ellipsoid of 95 % holds, also where the covariance is an estimate.
+_STATED = 0.95
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,7 +95,7 @@ def lines(force: FloatArray, moment: FloatArray) -> tuple[FloatArray, FloatArray
     return np.cross(force, moment) / square, force / np.sqrt(square)
 
 
-def published_centre(force: ArrayLike, moment: ArrayLike, covariance: ArrayLike | None = None) -> Centre:
+def published_centre(force: ArrayLike, moment: ArrayLike, covariance: ArrayLike | None = None, *, freedom: float = math.inf) -> Centre:
     """The point nearest to all lines, as published: right where the sensors have no offset.
 
     Parameters
@@ -101,6 +106,8 @@ def published_centre(force: ArrayLike, moment: ArrayLike, covariance: ArrayLike 
     covariance : (6, 6) or (n, 6, 6) float, optional
         Of force and moment of a pose, N and N mm; where left out, it is that of `SensorNoise`, in the size that the lines'
         distances show.
+    freedom : float
+        Independent samples that the covariance was estimated from; infinite where it is known.
 
     Raises
     ------
@@ -134,17 +141,17 @@ def published_centre(force: ArrayLike, moment: ArrayLike, covariance: ArrayLike 
     plane = np.linalg.svd(g[:, None, :])[2][:, 1:]
     seen = np.einsum("nij,nj->ni", plane, apart)
     square = np.einsum("ni,nij,nj->", seen, np.linalg.inv(plane @ of_line @ plane.transpose(0, 2, 1)), seen)
-    misfit, chance, factor = _fit(float(square), 2 * len(F) - 3, scaled)
+    misfit, chance, factor = _fit(float(square), 2 * len(F) - 3, scaled, freedom)
     spread = inverse @ of_line.sum(axis=0) @ inverse.T
     return Centre(t, factor * spread, np.zeros(3), eigenvalue, np.linalg.norm(apart, axis=1), misfit, chance)
 
 
-def centre_of_gravity(force: ArrayLike, moment: ArrayLike, covariance: ArrayLike | None = None) -> Centre:
+def centre_of_gravity(force: ArrayLike, moment: ArrayLike, covariance: ArrayLike | None = None, *, freedom: float = math.inf) -> Centre:
     """The point of largest likelihood, with the sensors' offsets fitted beside it.
 
     Parameters
     ----------
-    force, moment, covariance
+    force, moment, covariance, freedom
         As of `published_centre`.
 
     Raises
@@ -198,7 +205,7 @@ def centre_of_gravity(force: ArrayLike, moment: ArrayLike, covariance: ArrayLike
             break
     else:
         raise _undetermined(F)
-    misfit, chance, factor = _fit(square, 3 * len(F) - 6, scaled)
+    misfit, chance, factor = _fit(square, 3 * len(F) - 6, scaled, freedom)
     scale = 1 / np.sqrt(np.diag(information))
     spread = np.outer(scale, scale) * np.linalg.inv(information * np.outer(scale, scale))
     q, g = lines(F, M - x[3:])
@@ -269,18 +276,32 @@ def _door(
     return F, M, np.broadcast_to(given, (len(F), 6, 6)), covariance is None
 
 
-def _fit(square: float, freedom: int, scaled: bool) -> tuple[float, float, float]:
+def _fit(square: float, freedom: int, scaled: bool, of_noise: float) -> tuple[float, float, float]:
     """Misfit, its chance, and what the covariance is multiplied by."""
+    wider, left = 1.0, max(of_noise - _SPENT, 1.0)
+    if math.isfinite(of_noise):
+        # The inverse of an estimated covariance is too large by n / (n - 4) on average (Wishart, three components of a pose's
+        # residual), and the point scatters by F and not by chi-square.
+        from scipy.stats import chi2, f
+
+        square *= left / of_noise
+        wider = of_noise / left * 3 * float(f.ppf(_STATED, 3, left)) / float(chi2.ppf(_STATED, 3))
     if freedom <= 0:
-        return float("nan"), float("nan"), 1.0
+        return float("nan"), float("nan"), wider
     misfit = square / freedom
     if scaled:
         return misfit, float("nan"), misfit
+    from scipy.stats import f as fisher
+
+    chance = float(fisher.sf(misfit, freedom, left)) if math.isfinite(of_noise) else _chi_square(square, freedom)
+    # Where something else than noise moves the lines (an object that slips, a crooked sensor), the noise does not say how far.
+    return misfit, chance, wider * misfit if chance < MEET_CHANCE else wider
+
+
+def _chi_square(square: float, freedom: int) -> float:
     from scipy.stats import chi2
 
-    chance = float(chi2.sf(square, freedom))
-    # Where something else than noise moves the lines (an object that slips, a crooked sensor), the noise does not say how far.
-    return misfit, chance, misfit if chance < MEET_CHANCE else 1.0
+    return float(chi2.sf(square, freedom))
 
 
 def _require_regular(A: FloatArray, n: int) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,6 +10,7 @@ from numpy.typing import NDArray
 
 from skinfab.errors import InputError
 from skinfab.fingertip.force.logs import WrenchLog
+from skinfab.fingertip.force.wrench import WRENCH
 
 FloatArray = NDArray[np.float64]
 
@@ -31,6 +33,8 @@ class Poses:
         Of the means; None where there are too few samples to tell.
     samples : (n,) int
     notes : tuple of str
+    freedom : float
+        Independent samples, all together, that the covariance was estimated from; infinite where it is not an estimate.
     """
 
     force: FloatArray
@@ -38,6 +42,7 @@ class Poses:
     covariance: FloatArray | None
     samples: NDArray[np.int64]
     notes: tuple[str, ...] = ()
+    freedom: float = math.inf
 
 
 def poses_of(log: WrenchLog) -> Poses:
@@ -65,21 +70,52 @@ def poses_of(log: WrenchLog) -> Poses:
         return Poses(log.force, log.moment, None, np.ones(len(log), dtype=np.int64), (f"{log.name} has no column pose: each row is one",))
     numbers = log.others[COLUMN]
     kept = np.isfinite(numbers)
-    names, of = np.unique(numbers[kept], return_inverse=True)
+    # A pose lasts until the number changes: one that comes again later is another one, since nothing says that the hand is back.
+    of = np.cumsum(np.diff(numbers[kept], prepend=numbers[kept][:1]) != 0)
     wrench = wrench[kept]
-    if len(names) < 2:
+    poses = int(of[-1]) + 1 if len(of) else 0
+    if poses < 2:
         raise InputError(f"{log.name} holds one pose; turn the hand and read again")
     count = np.bincount(of)
     mean = np.stack([np.bincount(of, wrench[:, j]) for j in range(6)], axis=1) / count[:, None]
     apart = wrench - mean[of]
     notes = [] if kept.all() else [f"{log.name}: {int((~kept).sum())} rows are of no pose and were left out"]
-    free = len(wrench) - len(names)
+    again = poses - len(np.unique(numbers[kept]))
+    notes += [f"{log.name}: {again} pose numbers come again later, and count as poses of their own"] * bool(again)
+    free = len(wrench) - poses
     if free < _ENOUGH:
         return Poses(mean[:, :3], mean[:, 3:], None, count, (*notes, f"{log.name} has too few samples a pose to show its noise"))
-    within = apart.T @ apart / free * _correlated(apart, of)
+    correlated = _correlated(apart, of)
+    within = apart.T @ apart / free * correlated
     if not np.linalg.eigvalsh(within)[0] > 0:
         return Poses(mean[:, :3], mean[:, 3:], None, count, (*notes, f"{log.name}: a component never changes within a pose"))
-    return Poses(mean[:, :3], mean[:, 3:], within / count[:, None, None], count, tuple(notes))
+    return Poses(mean[:, :3], mean[:, 3:], within / count[:, None, None], count, tuple(notes), free / correlated)
+
+
+def require_alive(log: WrenchLog) -> None:
+    """Refuse a log in which a component reads the same all the time: its wire is off, or it is not measured.
+
+    Raises
+    ------
+    InputError
+        Which one is said.
+
+    Examples
+    --------
+    >>> try:
+    ...     require_alive(WrenchLog("a.csv", np.arange(3.0), np.eye(3), np.zeros((3, 3))))
+    ... except InputError as fault:
+    ...     print(fault)
+    a.csv: Mx, My, Mz read 0, 0, 0 all the time, so nothing measures them; look at the sensor and the log's columns
+    """
+    wrench = np.concatenate([log.force, log.moment], axis=1)
+    if len(log) > 1 and (dead := np.flatnonzero(np.ptp(wrench, axis=0) == 0).tolist()):
+        names, values = ", ".join(WRENCH[k] for k in dead), ", ".join(f"{wrench[0, k]:g}" for k in dead)
+        one = len(dead) == 1
+        raise InputError(
+            f"{log.name}: {names} {'reads' if one else 'read'} {values} all the time, so nothing measures {'it' if one else 'them'}; "
+            "look at the sensor and the log's columns"
+        )
 
 
 def _correlated(apart: FloatArray, of: NDArray[np.int64]) -> float:

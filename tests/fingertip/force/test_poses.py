@@ -7,7 +7,7 @@ import pytest
 
 from skinfab.errors import InputError
 from skinfab.fingertip.force.logs import WrenchLog
-from skinfab.fingertip.force.poses import poses_of
+from skinfab.fingertip.force.poses import poses_of, require_alive
 
 
 def log(n: int = 400, *, filtered: int = 1, seed: int = 0) -> WrenchLog:
@@ -48,6 +48,25 @@ def test_rows_between_poses_are_left_out() -> None:
     pose[95:105] = np.nan
     found = poses_of(replace(made, others={"pose": pose}))
     assert found.samples.tolist() == [95, 95, 100, 100] and "10 rows" in found.notes[0]
+
+
+def test_a_number_that_comes_again_is_another_pose() -> None:
+    made = log()
+    pose = np.repeat([0.0, 1.0, 0.0, 1.0], 100)
+    found = poses_of(replace(made, others={"pose": pose}))
+    assert found.force[:, 0] == pytest.approx(np.arange(4), abs=0.4) and "2 pose numbers come again" in found.notes[0]
+
+
+def test_samples_that_follow_one_another_are_fewer_independent_ones() -> None:
+    assert poses_of(log()).freedom == pytest.approx(396, rel=0.15) and 40 < poses_of(log(filtered=5)).freedom < 150
+
+
+def test_a_dead_component_is_named() -> None:
+    require_alive(log())
+    made = log()
+    made.force[:, 1], made.moment[:, 0] = 1.0, 0.0
+    with pytest.raises(InputError, match=r"a\.csv: Fy, Mx read 1, 0 all the time"):
+        require_alive(made)
 
 
 def test_one_pose_is_none() -> None:
