@@ -15,6 +15,8 @@ FlagArray = NDArray[np.uint8]
 INVALID, NO_CONTACT, MISSED, TORSION, AMBIGUOUS = 1, 2, 4, 8, 16
 #: Columns of what comes out: point (3), inward normal (3), |f|, inclination, torsion, miss, standard deviation.
 COLUMNS = 11
+#: The distance has at most two minima on the rim, so that steps of 5.6 degrees part them; then to 1e-7 of a step. What a pull costs, mm.
+_RIM_STEPS, _RIM_HALVINGS, _GOLDEN, _PULLS = 64, 34, 0.6180339887498949, 1e6
 
 
 @njit(cache=True)
@@ -104,6 +106,77 @@ def state(
 
 
 @njit(cache=True)
+def _apart2(x: float, y: float, z: float, ox: float, oy: float, oz: float, dx: float, dy: float, dz: float) -> float:
+    """Squared distance of a point from the line through o along d."""
+    ex, ey, ez = x - ox, y - oy, z - oz
+    along = ex * dx + ey * dy + ez * dz
+    return max(ex * ex + ey * ey + ez * ez - along * along, 0.0)
+
+
+@njit(cache=True)
+def _on_rim(angle: float, radius: float, aside: FloatArray, other: FloatArray) -> tuple[float, float, float]:
+    c, s = radius * math.cos(angle), radius * math.sin(angle)
+    return c * aside[0] + s * other[0], c * aside[1] + s * other[1], c * aside[2] + s * other[2]
+
+
+@njit(cache=True)
+def _rim_cost(
+    angle: float, radius: float, aside: FloatArray, other: FloatArray, ox: float, oy: float, oz: float, dx: float, dy: float, dz: float
+) -> float:
+    """Squared distance of a point of the rim from the line; far more where the force would pull there."""
+    x, y, z = _on_rim(angle, radius, aside, other)
+    return _apart2(x, y, z, ox, oy, oz, dx, dy, dz) + _PULLS * max(x * dx + y * dy + z * dz, 0.0)
+
+
+@njit(cache=True)
+def nearest_on_dome(
+    ox: float,
+    oy: float,
+    oz: float,
+    dx: float,
+    dy: float,
+    dz: float,
+    radius: float,
+    axis: FloatArray,
+    aside: FloatArray,
+) -> tuple[float, float, float]:
+    """Of the dome about the origin, where the force can push (not pull), the point nearest to the line through o along d.
+
+    o is the line's own nearest point to the origin. Where the line passes the ball by, it is the ball's nearest point if that is
+    on the dome. Else it is on the rim: looked for in steps, then by golden section about the best one.
+    """
+    across2 = ox * ox + oy * oy + oz * oz
+    if across2 > radius * radius and ox * axis[0] + oy * axis[1] + oz * axis[2] >= 0.0:
+        scale = radius / math.sqrt(across2)
+        return ox * scale, oy * scale, oz * scale
+    other = np.cross(axis, aside)
+    step = 2.0 * math.pi / _RIM_STEPS
+    best, least = 0.0, math.inf
+    for k in range(_RIM_STEPS):
+        far = _rim_cost(k * step, radius, aside, other, ox, oy, oz, dx, dy, dz)
+        if far < least:
+            best, least = k * step, far
+    low, high = best - step, best + step
+    for _ in range(_RIM_HALVINGS):
+        a, b = high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)
+        at_a = _rim_cost(a, radius, aside, other, ox, oy, oz, dx, dy, dz)
+        if at_a < _rim_cost(b, radius, aside, other, ox, oy, oz, dx, dy, dz):
+            high = b
+        else:
+            low = a
+    best = 0.5 * (low + high)
+    least = _rim_cost(best, radius, aside, other, ox, oy, oz, dx, dy, dz)
+    # Where the rim turns from pushed to pulled is a minimum that steps may pass over.
+    edge = math.atan2(-(dx * aside[0] + dy * aside[1] + dz * aside[2]), dx * other[0] + dy * other[1] + dz * other[2])
+    for angle in (edge, edge + math.pi):
+        x, y, z = _on_rim(angle, radius, aside, other)
+        far = _apart2(x, y, z, ox, oy, oz, dx, dy, dz)
+        if far < least:
+            best, least = angle, far
+    return _on_rim(best, radius, aside, other)
+
+
+@njit(cache=True)
 def enter_hemisphere(
     F: FloatArray,
     M: FloatArray,
@@ -139,27 +212,14 @@ def enter_hemisphere(
         ox, oy, oz = ox - along * dx, oy - along * dy, oz - along * dz
         across2 = ox * ox + oy * oy + oz * oz
         left = radius * radius - across2
-        if left >= 0.0:  # of the two roots the one where the force goes in
-            root = math.sqrt(left)
-            x, y, z = ox - root * dx, oy - root * dy, oz - root * dz
-        else:
+        root = math.sqrt(max(left, 0.0))  # of the two roots the one where the force goes in
+        x, y, z = ox - root * dx, oy - root * dy, oz - root * dz
+        if left < 0.0 or x * axis[0] + y * axis[1] + z * axis[2] < 0.0:
             flag |= MISSED
-            scale = radius / math.sqrt(across2)
-            x, y, z = ox * scale, oy * scale, oz * scale
-        height = x * axis[0] + y * axis[1] + z * axis[2]
-        if height < 0.0:  # on the half that is not there: the rim
-            flag |= MISSED
-            x, y, z = x - height * axis[0], y - height * axis[1], z - height * axis[2]
-            length = math.sqrt(x * x + y * y + z * z)
-            if length > 0.0:
-                x, y, z = x * radius / length, y * radius / length, z * radius / length
-            else:
-                x, y, z = aside[0] * radius, aside[1] * radius, aside[2] * radius
+            x, y, z = nearest_on_dome(ox, oy, oz, dx, dy, dz, radius, axis, aside)
         miss = 0.0
         if flag & MISSED:
-            ex, ey, ez = x - ox, y - oy, z - oz
-            along = ex * dx + ey * dy + ez * dz
-            miss = math.sqrt(max(ex * ex + ey * ey + ez * ez - along * along, 0.0))
+            miss = math.sqrt(_apart2(x, y, z, ox, oy, oz, dx, dy, dz))
         row[0], row[1], row[2] = x + centre[0], y + centre[1], z + centre[2]
         row[3], row[4], row[5] = -x / radius, -y / radius, -z / radius
         describe(row, fx, fy, fz, force, torsion, miss, 2.0 * radius, force_sd, moment_sd)

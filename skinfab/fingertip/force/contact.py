@@ -83,8 +83,8 @@ class Contacts:
     Parameters
     ----------
     point : (n, 3) float, mm
-        In the sensor's frame; the surface's nearest point where the line misses it, and the pole (of a mesh, the first
-        corner) where there is no contact.
+        In the sensor's frame; where the line misses the surface, the nearest point of it (of a dome: of where the force can
+        push), and the pole (of a mesh, the first corner) where there is no contact.
     normal : (n, 3) float
         Unit, into the fingertip.
     force_n : (n,) float, N

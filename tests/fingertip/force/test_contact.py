@@ -97,7 +97,7 @@ def test_a_line_that_misses_gives_the_nearest_point_and_how_far_that_is() -> Non
     found = locate([[0, 0, -1.0]], [[0, -30.0, 0]])  # the line x = -30
     assert found.point[0].tolist() == pytest.approx([-20, 0, 0]) and found.miss_mm[0] == pytest.approx(10) and found.missed[0]
     under = locate([[-1.0, 0, 0]], [[0, 6.0, 0]])  # 6 mm below the rim, along -x
-    assert under.point[0].tolist() == pytest.approx([20, 0, 0]) and under.miss_mm[0] == pytest.approx(6)
+    assert under.point[0].tolist() == pytest.approx([20, 0, 0], abs=1e-5) and under.miss_mm[0] == pytest.approx(6)
 
 
 def test_twist_is_the_moment_about_the_line_wherever_the_line_is() -> None:
@@ -139,3 +139,21 @@ def test_domes_and_gates_that_are_none() -> None:
 
 def test_no_sample_is_no_contact() -> None:
     assert len(locate(np.empty((0, 3)), np.empty((0, 3)))) == 0
+
+
+def test_a_line_that_misses_is_as_far_off_as_a_search_over_the_dome_says() -> None:
+    polar, around = np.meshgrid(np.arccos(np.linspace(0, 1, 150)), np.linspace(0, 2 * np.pi, 500))
+    dome = 20 * np.stack([np.sin(polar) * np.cos(around), np.sin(polar) * np.sin(around), np.cos(polar)], axis=-1).reshape(-1, 3)
+    rng = np.random.default_rng(5)
+    force = rng.normal(size=(120, 3))
+    force /= np.linalg.norm(force, axis=1)[:, None]
+    moment = np.cross(rng.uniform(-35, 35, (120, 3)), force)
+    found = locate(force, moment)
+    assert found.missed.sum() > 50
+    for k in np.flatnonzero(found.missed):
+        off = dome[dome @ force[k] <= 0] - np.cross(force[k], moment[k])  # where it can push
+        least = np.sqrt(np.maximum((off**2).sum(axis=1) - (off @ force[k]) ** 2, 0).min())
+        own = found.point[k] - np.cross(force[k], moment[k])
+        assert found.miss_mm[k] == pytest.approx(np.linalg.norm(own - own @ force[k] * force[k]), abs=1e-4)
+        assert least - 0.25 < found.miss_mm[k] < least + 1e-6 and found.point[k, 2] > -1e-9
+        assert np.linalg.norm(found.point[k]) == pytest.approx(20)
