@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from skinfab.fingertip.force.poses import Poses
 
 _RUN = ("gravity.csv", "gravity.png", "result.json")
+#: Headings of truth.csv, which lies beside the simulator's logs and is none.
+_TRUE = ("log", "x_mm", "y_mm", "z_mm", "mass_kg", "simulated")
 #: From the hand's origin to what it holds.
 _HAND_MM = 300.0
 
@@ -81,7 +83,7 @@ def simulate(args: argparse.Namespace) -> int:
 
     scene = HandScene(poses=args.poses, span_deg=args.span)
     names = [f"{place.replace(' ', '-')}.csv" for place in PAPER_PLACES]
-    truth = [["log", "x_mm", "y_mm", "z_mm", "mass_kg", "simulated"]]
+    truth = [list(_TRUE)]
     with staged_folder(args.output) as folder:
         for k, (name, centre) in enumerate(zip(names, PAPER_TRUTH, strict=True)):
             held = hold(centre, seed=1000 * args.seed + k, scene=scene, name=name)
@@ -98,13 +100,18 @@ def simulate(args: argparse.Namespace) -> int:
 
 def run(args: argparse.Namespace) -> int:
     """Find the centre of each object, and write it down."""
+    from skinfab.errors import InputError
     from skinfab.files import require_apart
     from skinfab.fingertip.force.gravity_figure import draw_centres
     from skinfab.staging import staged_folder
 
     require_apart(args.output, _RUN, args.logs)
     found, notes = [], []
-    for path in args.logs:
+    logs = [path for path in args.logs if not _is_truth(path)]
+    notes += [f"{path} is the simulator's table of what is true, and was passed over" for path in args.logs if path not in logs]
+    if not logs:
+        raise InputError(f"{args.logs[0]} is the simulator's table of what is true; give the logs beside it")
+    for path in logs:
         each, said = _one(path, args)
         found.append(each)
         notes += said
@@ -128,6 +135,13 @@ def run(args: argparse.Namespace) -> int:
         )
     print(f"{args.output}: {', '.join(_RUN)}")
     return 0
+
+
+def _is_truth(path: Path) -> bool:
+    if path.suffix.lower() != ".csv" or not path.is_file():
+        return False
+    with path.open("rb") as file:
+        return file.readline(200).decode("utf-8", "replace").strip() == ",".join(_TRUE)
 
 
 def _one(path: Path, args: argparse.Namespace) -> tuple[Found, list[str]]:

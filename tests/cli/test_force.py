@@ -90,7 +90,8 @@ def test_a_log_that_cannot_be_decided_on_stops_no_others(
 def test_gravity_from_logs_to_a_table(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     said(capsys, "simulate", "gravity", "-o", tmp_path / "logs")
     truth = {row["log"]: row for row in csv.DictReader((tmp_path / "logs" / "truth.csv").read_text().splitlines())}
-    result = said(capsys, "run", "gravity", *(tmp_path / "logs" / name for name in truth), "-o", tmp_path / "out", "--place-sd", "0.5")
+    result = said(capsys, "run", "gravity", *sorted((tmp_path / "logs").iterdir()), "-o", tmp_path / "out", "--place-sd", "0.5")
+    assert any("truth.csv is the simulator's table" in note for note in result["notes"])
     assert result["simulated"] and len(result["objects"]) == 5
     for each in result["objects"]:
         true = [float(truth[each["log"]][axis]) for axis in ("x_mm", "y_mm", "z_mm")]
@@ -131,7 +132,9 @@ def test_liquids(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     ("arguments", "status", "says"),
     [
         (["run"], 2, "TOPIC"),
-        (["train", "gravity", "a.csv", "-o", "x"], 2, "invalid choice: 'gravity'"),
+        (["train", "gravity", "a.csv", "-o", "x"], 2, "nothing is to be learned: the centre follows from the poses"),
+        (["train", "contact"], 2, "skinfab force run contact --friction DEG"),
+        (["train", "liquid", "a.csv"], 2, "use skinfab force run liquid LOG"),
         (["run", "texture", "a.csv", "-o", "x"], 2, "--model"),
         (["run", "gravity", "nothing.csv", "-o", "x"], 1, "nothing.csv"),
         (["run", "gravity", "a.csv", "--max-sd", "-1", "-o", "x"], 2, "not a positive number"),
