@@ -15,6 +15,7 @@ from skinfab.cli.record import baud
 
 if TYPE_CHECKING:
     from skinfab.fingertip.nail.live import Told
+    from skinfab.readout.logs.log import Log
 
 #: Readings from one decision to the next: 5.7 ms, a turn of the motor.
 _EVERY = 8
@@ -107,31 +108,47 @@ def _from_log(args: argparse.Namespace, content: Any) -> tuple[list[Told], dict[
         "notes": [*log.notes, *(f"{log.file}: {wrong}" for wrong in check_times(log.recording))],
     }
     if args.labels:
-        facts |= _judged(args.labels, log.file, told, samples, content.model.rate_hz)
+        judged, notes = _judged(args.labels, log, told, samples, content)
+        facts |= judged | {"notes": [*facts["notes"], *notes]}
     return told, facts
 
 
-def _judged(path: Path, file: str, told: Sequence[Told], samples: int, rate_hz: float) -> dict[str, Any]:
-    """How many of the trials of this log are right: what most of the windows that lie wholly in a trial say."""
+def _judged(path: Path, log: Log, told: Sequence[Told], samples: int, content: Any) -> tuple[dict[str, Any], list[str]]:
+    """How many of the trials of this log that the model did not learn from are right: what most of the windows in a trial say."""
+    import numpy as np
+
     from skinfab.errors import InputError
+    from skinfab.fingertip.confusion import grouped_accuracy
     from skinfab.fingertip.nail.labels import read_labels
-    from skinfab.rates import wilson
 
     labels, _ = read_labels(path)
-    own = [each for each in labels if each.log == file]
+    own = [each for each in labels if each.log == log.file]
     if not own:
-        raise InputError(f"{path} has no row of {file}; give the table that goes with the log")
-    right = of = 0
-    for each in own:
+        raise InputError(f"{path} has no row of {log.file}; give the table that goes with the log")
+    learned = content.made_from.get("learned")
+    spans = (learned or {}).get(log.sha256, [])
+    fresh = [each for each in own if not any(each.start_s < end and start < each.end_s for start, end in spans)]
+    notes = []
+    if learned is None:
+        notes.append("the model does not say which trials it learned from; where they are among these, more is right than of new ones")
+    if left_out := len(own) - len(fresh):
+        notes.append(f"the model learned from {left_out} of the {len(own)} trials, which are not counted")
+    rate_hz = content.model.rate_hz
+    right, groups = [], []
+    for k, each in enumerate(fresh):
         # Of the last reading: half a reading to spare, so that a window that just fits does.
         first, last = each.start_s + (samples - 1.5) / rate_hz, each.end_s - 0.5 / rate_hz
         said = Counter(one.decision.label for one in told if one.decision and first <= one.time_s <= last)
         if said:
-            of += 1
-            right += said.most_common(1)[0][0] == each.label
-    rate = wilson(right, of)
-    trials = {"trials": of, "right": right, "accuracy": {"value": rate.value if of else None, "low": rate.low, "high": rate.high}}
-    return {"labels": {"file": path.name, **trials}}
+            right.append(said.most_common(1)[0][0] == each.label)
+            groups.append(f"{each.participant}/{each.trial or k}")
+    if fresh and not right:
+        notes.append(f"no trial has a window of {samples} readings that could be decided; give a shorter --window")
+    of = {"trials": len(right), "right": sum(right), "learned_from": left_out}
+    if not right:
+        return {"labels": {"file": path.name, **of, "accuracy": {"value": None, "low": None, "high": None}}}, notes
+    rate = grouped_accuracy(np.array(right), groups)
+    return {"labels": {"file": path.name, **of, "accuracy": {"value": rate.value, "low": rate.low, "high": rate.high}}}, notes
 
 
 def _from_port(args: argparse.Namespace, content: Any) -> tuple[list[Told], dict[str, Any]]:
@@ -234,7 +251,7 @@ def _lines(result: dict[str, Any]) -> list[str]:
     if labels := result.get("labels"):
         rate = labels["accuracy"]
         share = "-" if rate["value"] is None else f"{100 * rate['value']:.1f} % [{100 * rate['low']:.1f}, {100 * rate['high']:.1f}]"
-        lines.append(f"{labels['right']} of {labels['trials']} trials are right: {share}")
+        lines.append(f"{labels['right']} of {labels['trials']} trials that the model did not learn from are right: {share}")
     if latency := result.get("latency_ms"):
         lines.append(
             f"from the last reading's arrival to the decision: {latency['median']:.2f} ms (median), {latency['p99']:.2f} (99 %), "

@@ -77,6 +77,7 @@ def run(args: argparse.Namespace) -> int:
         "notes": notes,
     }
     kept = {key: result[key] for key in ("simulated", "labels", "participants", "trials", "held_out")}
+    kept["learned"] = _learned_from(trials, rows.tolist())
     save_nail(args.output, NailFile(model, regression, kept))
     result["file"] = str(args.output)
     if args.json:
@@ -111,6 +112,14 @@ def _learned_rows(trials: list[Trial], across: bool) -> Any:
 
     test = np.array([each.label.part == "test" for each in trials])
     return np.flatnonzero(~test) if test.any() and not test.all() and not across else np.arange(len(trials))
+
+
+def _learned_from(trials: list[Trial], rows: list[int]) -> dict[str, list[list[float]]]:
+    """From when to when in which log, by its hash: these trials must not tell how good the model is."""
+    out: dict[str, list[list[float]]] = {}
+    for k in rows:
+        out.setdefault(trials[k].sha256, []).append([trials[k].label.start_s, trials[k].label.end_s])
+    return out
 
 
 def _split_by(trials: list[Trial], across: bool) -> str:

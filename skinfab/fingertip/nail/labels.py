@@ -95,12 +95,15 @@ class Trial:
     saturated : (n, 6) bool
         At the end of the channel's range: the value is no measurement.
     rate_hz : float
+    sha256 : str
+        Of the log; empty where there is no file.
     """
 
     label: Label
     values: FloatArray
     saturated: NDArray[np.bool_]
     rate_hz: float
+    sha256: str = ""
 
 
 def write_labels(path: str | Path, labels: Sequence[Label], *, simulated: bool) -> None:
@@ -175,7 +178,7 @@ def read_trials(path: str | Path) -> tuple[list[Trial], bool, list[str]]:
     """
     path = Path(path)
     labels, simulated = read_labels(path)
-    logs: dict[str, tuple[FloatArray, FloatArray, NDArray[np.bool_], float]] = {}
+    logs: dict[str, tuple[FloatArray, FloatArray, NDArray[np.bool_], float, str]] = {}
     trials, notes = [], []
     for each in labels:
         if each.log not in logs:
@@ -183,9 +186,9 @@ def read_trials(path: str | Path) -> tuple[list[Trial], bool, list[str]]:
             notes += [f"{log.file}: {note}" if log.file not in note else note for note in log.notes]
             simulated |= log.recording.stream.simulated
             time, values, bad, rate = _evenly(log.recording)
-            logs[each.log] = (time - time[0], values, bad, rate)
+            logs[each.log] = (time - time[0], values, bad, rate, log.sha256)
             notes += [f"{log.file}: {wrong}" for wrong in check_times(log.recording)]
-        time, values, bad, rate = logs[each.log]
+        time, values, bad, rate, sha256 = logs[each.log]
         first, last = np.searchsorted(time, [each.start_s - 0.5 / rate, each.end_s - 0.5 / rate])
         if last - first < 2 or time[-1] < each.end_s - 1.5 / rate:
             raise InputError(
@@ -198,7 +201,7 @@ def read_trials(path: str | Path) -> tuple[list[Trial], bool, list[str]]:
                 f"{path}: {each.log} has {there.sum()} of the {last - first} readings of its trial from {each.start_s:g} to "
                 f"{each.end_s:g} s; leave that row out, or record the trial again"
             )
-        trials.append(Trial(each, values[first:last], bad[first:last], rate))
+        trials.append(Trial(each, values[first:last], bad[first:last], rate, sha256))
     return trials, simulated, notes
 
 
