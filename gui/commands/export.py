@@ -15,6 +15,7 @@ from gui.desk import Desk
 from gui.jobs.runner import Job
 from gui.state.problem import Problem
 from gui.toolpath.choice import ARCS, ArcsChoice
+from skinfab.skin import Skin
 
 #: How often it is looked whether an export was cancelled, ms.
 _LOOK_MS = 200
@@ -145,18 +146,18 @@ class ExportCommands:
             text += " Files that an earlier run made and this one does not are removed too."
         return self._desk.dialogs.ask("Overwrite?", text, ("Overwrite", "Cancel"), cancel="Cancel") == "Overwrite"
 
-    def _start(self, label: str, function: Callable[..., Exported], **arguments: Any) -> None:
+    def _start(self, label: str, function: Callable[..., Exported], *, skin: Skin, **arguments: Any) -> None:
         running = self._running = _Running(label)
 
         def done(exported: Exported) -> None:
             running.ended = True
-            self._tell(exported)
+            self._tell(exported, skin)
 
         def failed() -> None:
             running.ended = True
 
         self._desk.session.report("export", [])
-        self._desk.work(label, function, done, source="export", failed=failed, **arguments)
+        self._desk.work(label, function, done, source="export", failed=failed, skin=skin, **arguments)
         running.job = job = self._desk.runner.job
 
         def look() -> None:
@@ -169,9 +170,11 @@ class ExportCommands:
 
         self._desk.root.after(_LOOK_MS, look)
 
-    def _tell(self, exported: Exported) -> None:
+    def _tell(self, exported: Exported, skin: Skin) -> None:
         files = exported.files
         where = str(files[0]) if len(files) == 1 else f"{len(files)} files into {_folder_of(files)}"
+        if self._desk.session.skin is not skin:
+            where += ", of the skin as it was when the export began: it was changed meanwhile"
         self._desk.say(f"Wrote {where}.")
         notes = [Problem(f"wrote {where}", "export", kind="note")]
         notes += [Problem(note, "export", kind="warning") for note in exported.notes]

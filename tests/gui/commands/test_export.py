@@ -126,6 +126,18 @@ def test_drawings(window, tmp_path, id, suffix):
     assert made.read_bytes() == (tmp_path / f"again.{suffix}").read_bytes()
 
 
+@pytest.mark.parametrize("undone", [False, True])
+def test_an_export_says_when_the_skin_was_changed_meanwhile(window, tmp_path, undone):
+    window.answers.path = made = tmp_path / "flat.svg"
+    window.actions["export_svg"].run()
+    window.session.do("another seed", replace(window.session.skin, seed=77))
+    if undone:
+        window.session.undo()
+    window.wait(lambda: window.runner.job is None)
+    said = f"Wrote {made}" + ("" if undone else ", of the skin as it was when the export began: it was changed meanwhile")
+    assert window.said == [said + "."] and window.problems("note") == ["w" + said[1:]]
+
+
 def test_an_ending_added_to_the_name_overwrites_nothing_unasked(window, tmp_path):
     (tmp_path / "flat.svg").write_text("mine")
     window.do("export_svg", tmp_path / "flat")
