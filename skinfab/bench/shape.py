@@ -156,7 +156,9 @@ def measure(
             for k, (learned, new) in enumerate(sets):
                 network = fit_shapes(features_of(learned.found, features), learned.shape, features, seed=k)
                 out.append(judged(network, new, features))
-            held = HeldOut(*(np.concatenate([getattr(each, name) for each in out]) for name in ("probability", "shape", "object")))
+            held = HeldOut(
+                *(np.concatenate([getattr(each, name) for each in out]) for name in ("probability", "shape", "object", "strange"))
+            )
             if yaw == yaws[0]:
                 confusions[features] = held.confusion
             sure, right = held.probability.max(axis=1), held.probability.argmax(axis=1) == held.shape

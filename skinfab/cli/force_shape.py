@@ -185,6 +185,7 @@ def _solved(log: str, number: int, grasps: Sequence[Grasp], decision: Decision) 
     from skinfab.fingertip.force.grasp import CUBOID, total_wrench, touches
     from skinfab.fingertip.force.gravity import centre_of_gravity, require_certain
     from skinfab.fingertip.force.reconstruct import reconstruct
+    from skinfab.fingertip.force.shape import NONE
     from skinfab.fingertip.force.shape_figure import View
 
     sound = [(each, found) for each in grasps if not (found := touches(each)).fault]
@@ -203,7 +204,13 @@ def _solved(log: str, number: int, grasps: Sequence[Grasp], decision: Decision) 
     elif decision.sure and not notes:
         notes.append(f"{log}, object {number}: a cuboid's size needs its centre of gravity: hold it in three poses or more")
     size = [round(x, 3) if np.isfinite(x) else None for x in solved.size] if solved else []
-    said = f"{decision.shape}, {decision.confidence:.2f}" if decision.sure else "unclear: grasp again"
+    said = (
+        f"{decision.shape}, {decision.confidence:.2f}"
+        if decision.sure
+        else "none of these shapes"
+        if decision.shape == NONE
+        else "unclear: grasp again"
+    )
     told = " x ".join("?" if x is None else f"{x:.1f}" for x in size)
     title = f"{log}, object {number}\n{said}{', ' + told + ' mm' if told else ''}"
     fact = {
@@ -212,6 +219,7 @@ def _solved(log: str, number: int, grasps: Sequence[Grasp], decision: Decision) 
         "shape": decision.shape,
         "confidence": decision.confidence,
         "grasps": decision.grasps,
+        "given": len(grasps),
         "sure": decision.sure,
         "size_mm": size,
         "centre_mm": [round(float(x), 3) for x in solved.centre] if solved else None,
@@ -233,9 +241,16 @@ def _csv(facts: Sequence[Mapping[str, Any]]) -> str:
 
 
 def _line(fact: Mapping[str, Any]) -> str:
+    from skinfab.fingertip.force.shape import NONE
+
     size = " x ".join("?" if x is None else f"{x:.1f}" for x in fact["size_mm"])
     made = " (simulated)" if fact["simulated"] else ""
     many = f"{fact['grasps']} grasp{'s' if fact['grasps'] > 1 else ''}"
+    if fact["sure"] and fact["grasps"] < fact["given"]:
+        many = f"sure after {fact['grasps']} of {fact['given']} grasps"
+    if fact["shape"] == NONE:
+        said = f"none of these shapes, by {many}; look at the units (mm, rad, N, N mm), or the object is another one"
+        return f"{fact['log']}, object {fact['object']}{made}: {said}"
     if not fact["sure"]:
         return (
             f"{fact['log']}, object {fact['object']}{made}: unclear after {many} ({fact['shape']}, {fact['confidence']:.2f}); grasp again"

@@ -184,6 +184,11 @@ def touches(grasp: Grasp) -> Touches:
     found = locate(grasp.force.mean(axis=0), grasp.moment.mean(axis=0))
     turn = Rotation.from_rotvec(grasp.turn)
     faults = [f"finger {k + 1}: {found.words(k)}" for k in range(len(found)) if not found.touching[k] or found.missed[k]]
+    # No hand has four domes of this radius so near each other, and no turn is more than a full one.
+    if np.linalg.norm(grasp.position[:, None] - grasp.position[None], axis=2).max() < RADIUS_MM:
+        faults.append(f"all fingertips lie within {RADIUS_MM:g} mm; are their places in mm?")
+    if np.linalg.norm(grasp.turn, axis=1).max() > 2 * math.pi:
+        faults.append("a fingertip is turned by more than a full turn; are rotation vectors in rad?")
     return Touches(grasp.position + turn.apply(found.point), turn.apply(found.normal), "; ".join(faults))
 
 

@@ -27,6 +27,10 @@ IntArray = NDArray[np.int64]
 CONFIDENCE = 0.9
 #: Grasps of one object after which the likeliest shape is said, however unclear it is.
 MOST_GRASPS = 4
+#: What `Decision.shape` is where the contacts are of none of the three.
+NONE = "none of these"
+#: So large a part of the grasps learned from fits better than what is taken for none.
+KNOWN = 0.99
 #: Hidden sigmoids: the paper's, and what three features need (docs/force.md).
 PUBLISHED_HIDDEN, HIDDEN = 50, 3
 #: Weight decay of each: what serves its own features best.
@@ -58,6 +62,11 @@ def pose_free_features(found: Touches) -> FloatArray:
 def misfit_features(found: Touches) -> FloatArray:
     """(3,) logarithms of how badly the best sphere, cylinder and cuboid miss the contacts."""
     return np.log([max(FITS[shape](found.point, found.normal).misfit, _LEAST_MISFIT) for shape in SHAPES])
+
+
+def least_misfit(found: Touches) -> float:
+    """How badly the best of the three shapes misses the contacts: about 1 where it is one of them."""
+    return float(np.exp(misfit_features(found).min()))
 
 
 FEATURES: dict[str, Callable[[Touches], FloatArray]] = {
@@ -134,7 +143,7 @@ class Decision:
     Parameters
     ----------
     shape : str
-        The likeliest.
+        The likeliest, or `NONE`: even the best of the three misses the contacts by more than it misses 99 % of those learned from.
     confidence : float
     grasps : int
         So many it took.
@@ -151,14 +160,16 @@ class Decision:
 def decide(model: ShapeModel, grasps: Sequence[Grasp], *, confidence: float = CONFIDENCE) -> Decision:
     """Grasp after grasp of one object until one shape is likely enough: their probabilities are multiplied.
 
-    A grasp whose contacts are faulty says nothing.
+    A grasp whose contacts are faulty says nothing, and one that no shape fits says that it is none of them; that is the answer
+    where half of those taken or more say so.
 
     Raises
     ------
     InputError
         There is no grasp, or all are faulty.
     """
-    weight, taken = np.zeros(len(SHAPES)), 0
+    weight, taken, strange = np.zeros(len(SHAPES)), 0, 0
+    limit = float(model.facts.get("misfit_limit", np.inf))
     probability = np.full(len(SHAPES), 1 / len(SHAPES))
     faults = []
     for each in grasps:
@@ -167,12 +178,17 @@ def decide(model: ShapeModel, grasps: Sequence[Grasp], *, confidence: float = CO
             faults.append(found.fault)
             continue
         taken += 1
+        if least_misfit(found) > limit:
+            strange += 1
+            continue
         weight = weight + np.log(np.maximum(model.probability([found])[0], np.finfo(float).tiny))
         probability = np.exp(weight - weight.max())
         probability /= probability.sum()
-        if probability.max() >= confidence:
+        if probability.max() >= confidence and 2 * strange < taken:
             break
     if not taken:
         raise InputError(f"no grasp can be read: {'; '.join(faults) or 'there is none'}; grasp again")
+    if 2 * strange >= taken:
+        return Decision(NONE, 0.0, taken, False)
     best = int(probability.argmax())
     return Decision(SHAPES[best], float(probability[best]), taken, bool(probability[best] >= confidence))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -12,7 +13,7 @@ from skinfab.errors import InputError
 from skinfab.fingertip.confusion import Confusion, grouped_accuracy
 from skinfab.fingertip.force.grasp import SHAPES, Grasp, Touches, touches
 from skinfab.fingertip.force.network import Network
-from skinfab.fingertip.force.shape import ShapeModel, features_of, fit_shapes
+from skinfab.fingertip.force.shape import KNOWN, ShapeModel, features_of, fit_shapes, least_misfit
 from skinfab.fingertip.splits import leave_one_out
 from skinfab.rates import Rate
 
@@ -74,11 +75,14 @@ class HeldOut:
     probability : (n, 3) float
     shape : (n,) int
     object : (n,) int
+    strange : (n,) bool
+        Taken for none of the three, whatever the probabilities are.
     """
 
     probability: FloatArray
     shape: IntArray
     object: IntArray
+    strange: NDArray[np.bool_]
 
     @property
     def accuracy(self) -> Rate:
@@ -95,7 +99,7 @@ class HeldOut:
         right, sure = self.probability.argmax(axis=1) == self.shape, self.probability.max(axis=1)
         out = []
         for least in confidences:
-            answered = sure >= least
+            answered = (sure >= least) & ~self.strange
             out.append((float(answered.mean()), float(right[answered].mean()) if answered.any() else float("nan")))
         return out
 
@@ -116,12 +120,16 @@ def train_shapes(of: Examples, features: str, *, seed: int = 0) -> tuple[ShapeMo
     out = np.empty((len(X), len(SHAPES)))
     for train, test in leave_one_out(of.object.tolist()):
         out[test] = fit_shapes(X[train], of.shape[train], features, seed=seed).probability(X[test])
-    held = HeldOut(out, of.shape, of.object)
+    misfit = np.array([least_misfit(each) for each in of.found])
+    limit = float(np.quantile(misfit, KNOWN))
+    held = HeldOut(out, of.shape, of.object, misfit > limit)
     rate = held.accuracy
     facts = {"grasps": len(X), "objects": len(set(of.object.tolist())), "seed": seed, "held_out": [rate.value, rate.low, rate.high]}
+    facts["misfit_limit"] = limit  # no fit learns, so that each grasp is judged by what does not know it
     return ShapeModel(features, fit_shapes(X, of.shape, features, seed=seed), facts), held
 
 
-def judged(network: Network, of: Examples, features: str) -> HeldOut:
-    """What a network says of other objects' grasps."""
-    return HeldOut(network.probability(features_of(of.found, features)), of.shape, of.object)
+def judged(network: Network, of: Examples, features: str, *, limit: float = np.inf) -> HeldOut:
+    """What a network says of other objects' grasps; those that no shape fits better than `limit` are of none of the three."""
+    strange = np.array([math.isfinite(limit) and least_misfit(each) > limit for each in of.found])
+    return HeldOut(network.probability(features_of(of.found, features)), of.shape, of.object, strange)

@@ -1,11 +1,13 @@
 """Shapes of new objects, grasped at any turn: told by misfits, hardly by raw contacts; and models that come back as they were."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from skinfab.errors import InputError
 from skinfab.fingertip.force.grasp import LEARNED, NEW, SHAPES, Touches, simulate_grasp, touches
-from skinfab.fingertip.force.shape import FEATURES, ShapeModel, decide, features_of, fit_shapes
+from skinfab.fingertip.force.shape import FEATURES, NONE, ShapeModel, decide, features_of, fit_shapes, least_misfit
 from skinfab.fingertip.saved import save_model
 
 
@@ -27,7 +29,8 @@ def new() -> tuple[list[Touches], np.ndarray]:
 
 @pytest.fixture(scope="module")
 def model(learned: tuple) -> ShapeModel:
-    return ShapeModel("misfits", fit_shapes(features_of(learned[0], "misfits"), learned[1], "misfits"), {"seed": 0})
+    limit = float(np.quantile([least_misfit(each) for each in learned[0]], 0.99))
+    return ShapeModel("misfits", fit_shapes(features_of(learned[0], "misfits"), learned[1], "misfits"), {"seed": 0, "misfit_limit": limit})
 
 
 def accuracy(features: str, learned: tuple, new: tuple) -> float:
@@ -79,3 +82,23 @@ def test_no_grasp_is_no_decision(model: ShapeModel) -> None:
     grasp.force[0, 2] = 0.0
     with pytest.raises(InputError, match="finger 3: no contact"):
         decide(model, [grasp])
+
+
+def test_what_is_none_of_the_three_is_said_to_be_none(model: ShapeModel) -> None:
+    rng = np.random.default_rng(2)
+    grasps = [simulate_grasp(NEW[k % 3], seed=rng) for k in range(30)]
+    # Rotation vectors that are another's: points and normals that belong to no solid.
+    mixed = [replace(each, turn=other.turn) for each, other in zip(grasps, grasps[::-1], strict=True)]
+    naive = model.probability([touches(each) for each in mixed]).max(axis=1) >= 0.9
+    said = [decide(model, [each]) for each in mixed]
+    assert np.mean([each.shape == NONE for each in said]) > 0.6
+    assert np.mean([each.sure for each in said]) < 0.55 * naive.mean() and all(not each.sure for each in said if each.shape == NONE)
+    assert np.mean([decide(model, [each]).shape == NONE for each in grasps]) < 0.1
+
+
+def test_units_that_cannot_be_are_named(model: ShapeModel) -> None:
+    grasp = simulate_grasp(NEW[0], seed=1)
+    with pytest.raises(InputError, match="are their places in mm"):
+        decide(model, [replace(grasp, position=grasp.position / 1000)])
+    with pytest.raises(InputError, match="are rotation vectors in rad"):
+        decide(model, [replace(grasp, turn=np.degrees(grasp.turn))])
