@@ -201,7 +201,7 @@ PEAK_FLAT = 0.9
 #: Another peak of a frame is a contact of its own from this share of the highest on: interpolation's ripples stay under a fifth.
 PEAK_OTHER = 1 / 3
 
-#: A fit of forces to a tactel array stops at steps below this: a tenth of what noise of one percent moves them, and what is left is its square.
+#: A fit of forces to a tactel array stops at steps below this: a tenth of what noise of one percent moves them; what is left is its square.
 MATCH_MM = 5e-3
 
 #: One force on the array explains a frame that leaves less than this part of the sum of squares: gains that are off by 3 % leave
