@@ -154,6 +154,7 @@ def _logged(args: argparse.Namespace, surface: Hemisphere | TipMesh, least: floa
     from skinfab.fingertip.force.logs import read_wrench
     from skinfab.fingertip.force.motion import Limits, MotionWatch, find_motions
     from skinfab.fingertip.force.tare import tared
+    from skinfab.fingertip.force.wrench import require_nmm
     from skinfab.progress import terminal_progress
 
     logs: list[WrenchLog] = []
@@ -167,6 +168,8 @@ def _logged(args: argparse.Namespace, surface: Hemisphere | TipMesh, least: floa
             if not math.isfinite(log.rate_hz):
                 raise InputError(f"{path} has a single row; that is no log of a motion")
             log = tared(log, seconds=args.tare) if args.tare else log
+            if not log.units_said:
+                require_nmm(log.force, log.moment, reach_mm=_reach(surface), least_force=least, where=log.name)
             watch = MotionWatch(Limits(args.friction), rate_hz=log.rate_hz, surface=surface, least_force=least)
             if late := int((np.diff(log.time) <= 0).sum()):
                 said = f"{log.name}: the time does not go on at {late} samples; motions were looked for in those that come in order"
@@ -175,6 +178,13 @@ def _logged(args: argparse.Namespace, surface: Hemisphere | TipMesh, least: floa
             events.append(find_motions(log.time, log.force, log.moment, watch))
         progress(1.0, "done")
     return logs, events
+
+
+def _reach(surface: Hemisphere | TipMesh) -> float:
+    """How far from the sensor's origin a contact can be, mm, about."""
+    from skinfab.fingertip.force.contact_mesh import TipMesh
+
+    return surface.size / 2 if isinstance(surface, TipMesh) else surface.radius
 
 
 def _watched(
@@ -212,14 +222,20 @@ def _facts(
         "notes": [note for log in logs for note in log.notes],
     }
     for log, (contacts, events) in zip(logs, found, strict=True):
-        touching = contacts.touching
+        touching, trusted = contacts.touching, contacts.trusted
+        if (missed := int((contacts.missed & touching).sum())) * 2 > int(touching.sum()):
+            out["notes"].append(
+                f"{log.name}: at {missed} of {int(touching.sum())} samples with a force its line misses the fingertip, or it would pull; "
+                "is the force's sign that of the force on the fingertip, and are its frame and size right?"
+            )
         out["logs"][log.name] = {
             "sha256": log.sha256,
             "simulated": log.simulated,
             "samples": len(log),
             "touching": int(touching.sum()),
             "flags": {words: int(((contacts.flags & bit) != 0).sum()) for bit, words in FLAGS.items()},
-            "median_sd_mm": float(f"{_median(contacts.sd_mm[touching]):.4g}") if touching.any() else None,
+            "trusted": int(trusted.sum()),
+            "median_sd_mm": float(f"{_median(contacts.sd_mm[trusted]):.4g}") if trusted.any() else None,
             "events": [{"kind": e.kind, "start_s": e.start, "end_s": None if e.lasting else e.end, "told_s": e.told} for e in events],
         }
     if truth:
@@ -264,7 +280,7 @@ def _write(
     with staged_folder(args.output) as folder:
         (folder / "contacts.csv").write_text(_contacts_csv(logs, [contacts for contacts, _ in found]))
         (folder / "events.csv").write_text(events_csv(events, simulated={log.name: log.simulated for log in logs}))
-        draw_motions(logs[0], *found[0], truth.get(logs[0].name, ()), args.friction, folder / "contact.png")
+        draw_motions(logs[0], *found[0], truth.get(logs[0].name, ()), args.friction, folder / "contact.png", logs=len(logs))
         (folder / "result.json").write_text(json.dumps(result, indent=1, allow_nan=False) + "\n")
 
 
@@ -290,10 +306,12 @@ def _lines(result: dict[str, Any]) -> list[str]:
         told = ", ".join(f"{kinds.count(kind)} x {kind}" for kind in dict.fromkeys(kinds)) or "nothing moved"
         made = " (simulated)" if log["simulated"] else ""
         known = "" if log["median_sd_mm"] is None else f", point known to {log['median_sd_mm']:.2g} mm"
-        lines.append(f"{name}{made}: touched in {log['touching']} of {log['samples']} samples{known}; {told}")
+        wrong = [f"{count} where {words}" for words, count in list(log["flags"].items())[2:] if count]
+        doubt = f"; flagged: {', '.join(wrong)}" if wrong else ""
+        lines.append(f"{name}{made}: touched in {log['touching']} of {log['samples']} samples{known}{doubt}; {told}")
     if "latency" in result:
         of = result["latency"]
-        lines.append(f"decided after {of['median_us']:.0f} us (99 %: {of['p99_us']:.0f} us, worst {of['worst_us']:.0f} us)")
+        lines.append(f"decided after {of['median_ms']:.2g} ms (99 %: {of['p99_ms']:.2g} ms, worst {of['worst_ms']:.2g} ms)")
     for kind, of in result.get("evaluation", {}).items():
         rates = [
             f"{of[key]['value']:.3f} [{of[key]['low']:.3f}, {of[key]['high']:.3f}]" if of[key]["value"] is not None else "-"

@@ -102,3 +102,28 @@ def test_a_log_is_not_replaced(grasps: Path, tmp_path: Path) -> None:
     before = (tmp_path / "contacts.csv").read_bytes()
     assert main(["force", "run", "contact", str(tmp_path / "contacts.csv"), "-o", str(tmp_path)]) == 1
     assert (tmp_path / "contacts.csv").read_bytes() == before
+
+
+def altered(log: Path, path: Path, columns: slice, factor: float) -> Path:
+    """The log with some of its columns multiplied."""
+    head, *rows = [line for line in log.read_text().splitlines() if not line.startswith("#")]
+    table = np.array([[float(x) for x in row.split(",")] for row in rows])
+    table[:, columns] *= factor
+    path.write_text("\n".join([head, *(",".join(f"{x:.7g}" for x in row) for row in table)]))
+    return path
+
+
+def test_a_flipped_sign_is_asked_about(grasps: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    log = altered(grasps / "grasp-40.csv", tmp_path / "flipped.csv", slice(1, 7), -1.0)
+    assert main(["force", "run", "contact", str(log), "-o", str(tmp_path / "out")]) == 0
+    said = capsys.readouterr()
+    assert "is the force's sign that of the force on the fingertip" in said.err and "where the force's line misses the surface" in said.out
+    right = grasps / "grasp-40.csv"
+    assert main(["force", "run", "contact", str(right), "-o", str(tmp_path / "right")]) == 0
+    assert "sign" not in capsys.readouterr().err
+
+
+def test_moments_in_newton_metres_are_refused(grasps: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    log = altered(grasps / "grasp-40.csv", tmp_path / "metres.csv", slice(4, 7), 0.001)
+    assert main(["force", "run", "contact", str(log), "-o", str(tmp_path / "out")]) == 1
+    assert "the moments are in N m" in capsys.readouterr().err and not (tmp_path / "out").exists()

@@ -19,14 +19,16 @@ if TYPE_CHECKING:
 
 #: Told apart by people who see no red or no green.
 COLOURS = {SLIDING: "#D55E00", SEPARATION: "#0072B2", ROLLING: "#009E73"}
+#: Of a contact's coordinates: none of the events' colours.
+_AXES = {"x": ("#000000", "-"), "y": ("#CC79A7", "-"), "z": ("#777777", "--")}
 _POINTS = 4000
 _DPI = 150
 
 
 def draw_motions(
-    log: WrenchLog, contacts: Contacts, found: Sequence[Motion], truth: Sequence[Motion], friction_deg: float, path: Path
+    log: WrenchLog, contacts: Contacts, found: Sequence[Motion], truth: Sequence[Motion], friction_deg: float, path: Path, *, logs: int = 1
 ) -> None:
-    """Write it as PNG; the true events, where they are known, are bars below."""
+    """Write it as PNG; the true events, where they are known, are bars below. `logs`: so many there are, of which this is the first."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
     from matplotlib.patches import Patch
@@ -35,7 +37,8 @@ def draw_motions(
     FigureCanvasAgg(figure)
     grid = figure.add_gridspec(3, 2, width_ratios=(3, 1.1))
     rows = [figure.add_subplot(grid[k, 0]) for k in range(3)]
-    figure.suptitle(f"{log.name}{' (simulated)' if log.simulated else ''}: contact and motion", fontsize=10, parse_math=False)
+    first = f" (the first of {logs} logs)" if logs > 1 else ""
+    figure.suptitle(f"{log.name}{' (simulated)' if log.simulated else ''}: contact and motion{first}", fontsize=10, parse_math=False)
     step = max(len(log) // _POINTS, 1)
     shown = contacts.touching & ~contacts.missed
     angle = np.where(shown, np.degrees(contacts.inclination_rad), np.nan)
@@ -45,7 +48,12 @@ def draw_motions(
         (rows[1], angle, "inclination, deg"),
         (rows[2], points, "contact x y z, mm"),
     ):
-        axes.plot(log.time[::step], value[::step], lw=0.7, color="#000000" if value.ndim == 1 else None)
+        if value.ndim == 1:
+            axes.plot(log.time[::step], value[::step], lw=0.7, color="#000000")
+        else:
+            for k, (part, (colour, dashes)) in enumerate(_AXES.items()):
+                axes.plot(log.time[::step], value[::step, k], lw=0.8, color=colour, ls=dashes, label=part)
+            axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize=7, frameon=False)
         axes.set_ylabel(label, fontsize=8)
         axes.tick_params(labelsize=7)
         axes.set_xlim(log.time[0], log.time[-1])
