@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 _WAIT_S = 0.2
 #: A contact that lasts is told again this often, s.
 _AGAIN_S = 1.0
-_MILLION = 1e6
+_MS = 1e3
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,7 +38,8 @@ class Watched:
     motions : tuple of Motion
         In order; one that lasted at the end has no end.
     latency_s : (n,) float
-        Of each sample: from when its last byte was read until it was decided on.
+        Of each sample that came while it was read on: from when its last byte was read until it was decided on. What had gathered
+        before waits for its turn, which says nothing of how long a decision takes.
     simulated : bool
     notes : tuple of str
     """
@@ -51,11 +52,13 @@ class Watched:
 
     @property
     def latency(self) -> dict[str, float]:
-        """Of the decisions, microseconds: the median, the 99 % quantile, and the worst."""
+        """Of the decisions, ms: the median, the 99 % quantile, and the worst; nothing where nothing came while it was read on."""
         import numpy as np
 
-        middle, most, worst = (_MILLION * np.quantile(self.latency_s, (0.5, 0.99, 1.0))).tolist()
-        return {"median_us": middle, "p99_us": most, "worst_us": worst}
+        if not len(self.latency_s):
+            return {}
+        middle, most, worst = (_MS * np.quantile(self.latency_s, (0.5, 0.99, 1.0))).tolist()
+        return {"median_ms": middle, "p99_ms": most, "worst_ms": worst}
 
 
 def watch_port(
@@ -109,14 +112,14 @@ def watch_port(
     locate(np.array([[0.0, 0.0, -1.0]]), np.zeros((1, 3)), surface)
     with SerialPort(port, baud=baud or BAUD) as source:
         stream = source.stream
-        columns = _columns(stream, port)
+        columns, scale = _columns(stream, port)
         if not stream.rate_hz:
             raise InputError(f"{port} does not say how many samples come a second; let the device describe its stream (docs/readout.md)")
         least = LEAST_FORCE_N if least_force is None else least_force
         watch = MotionWatch(limits, rate_hz=stream.rate_hz, surface=surface, least_force=least)
         teller, rest = _Teller(least, surface, quiet), _Rest(stream.name, tare)
         clock, end = HostClock(), time.monotonic() + (seconds or math.inf)
-        missing = 0
+        missing, began = 0, clock.now()
         try:
             while (left := end - time.monotonic()) > 0:
                 frame = source.read(min(left, _WAIT_S))
@@ -125,11 +128,12 @@ def watch_port(
                 if not frame.valid[columns].all() or frame.saturated[columns].any():
                     missing += 1
                     continue
-                wrench = rest.less(frame.device_time, frame.values[columns])
+                wrench = rest.less(frame.device_time, scale * frame.values[columns])
                 if wrench is None:
                     continue
                 new = watch.step(frame.device_time, wrench[:3], wrench[3:])
-                latency.append(clock.now() - frame.host_time)
+                if frame.host_time >= began:
+                    latency.append(clock.now() - frame.host_time)
                 rows.append((frame.device_time, *wrench.tolist()))
                 for each in new:
                     motions[each.told] = each
@@ -181,13 +185,14 @@ class _Rest:
         return mean
 
 
-def _columns(stream: Stream, port: str) -> list[int]:
-    from skinfab.errors import InputError
-    from skinfab.fingertip.force.wrench import WRENCH
+def _columns(stream: Stream, port: str) -> tuple[list[int], NDArray[np.float64]]:
+    """Where the six components are, and what makes them N and N mm."""
+    import numpy as np
 
-    if missing := [name for name in WRENCH if name not in stream.names]:
-        raise InputError(f"{port} sends no {', '.join(missing)} but {', '.join(stream.names)}; call the six components {', '.join(WRENCH)}")
-    return [stream.index(name) for name in WRENCH]
+    from skinfab.fingertip.force.wrench import wrench_columns
+
+    used = wrench_columns(stream.names, {each.name: each.unit for each in stream.channels}, where=port)
+    return [stream.index(name) for name, _ in used], np.array([scale for _, scale in used])
 
 
 class _Teller:
