@@ -10,11 +10,16 @@ import numpy as np
 
 from skinfab.bench.charts import png
 from skinfab.files import atomic_write
+from skinfab.fingertip.nail.patterns import TESTS
 from skinfab.fingertip.nail.protocol import Outcome
 from skinfab.fingertip.nail.published import CONDITIONS
 
 _OURS, _PAPER, _IMPROVED = "#0072B2", "#D55E00", "#009E73"
 _DPI = 130
+#: Above 100 %, so that a mark there is whole.
+_TOP = 106
+#: Inches for the names of classes, the marks' own size.
+_NAMES_INCHES, _NAME_SIZE = 1.55, 6
 
 
 def draw_accuracy(table: Sequence[Mapping[str, Any]], path: Path) -> None:
@@ -42,28 +47,48 @@ def draw_accuracy(table: Sequence[Mapping[str, Any]], path: Path) -> None:
             of = [(k, r["paper"]) for k, r in enumerate(rows) if r["paper"] is not None and bool(r["around"]) != exact]
             if of:
                 axes.plot(
-                    *zip(*of, strict=True), mark, color=_PAPER, ms=6 if exact else 14, mew=1.5, label="paper" if exact else '"around"'
+                    *zip(*of, strict=True),
+                    mark,
+                    color=_PAPER,
+                    ms=6 if exact else 14,
+                    mew=1.5,
+                    label="paper" if exact else 'paper, "around 50 %"',
                 )
         better = next(r for r in table if r["test"] == test and r["method"] == "improved")
         axes.plot(0, better["percent"], "^", color=_IMPROVED, ms=8, label="improved method")
         axes.set_xticks(at, [r["condition"] for r in rows], rotation=90, fontsize=7)
-        axes.set(title=test, ylim=(0, 100))
-        axes.legend(fontsize=7, loc="upper right")
+        axes.set(title=test, ylim=(0, _TOP), yticks=range(0, 101, 20))
     figure.axes[0].set_ylabel("right, %")
+    named = {name: mark for axes in figure.axes for mark, name in zip(*axes.get_legend_handles_labels(), strict=True)}
+    figure.legend(named.values(), named.keys(), loc="outside lower center", ncols=len(named), fontsize=8)
     atomic_write(path, png(figure))
 
 
 def draw_confusion(outcome: Outcome, path: Path) -> None:
-    """Write what was taken for what under each sensor condition as PNG, in percent of each row; 0 is no contact."""
+    """Write what was taken for what under each sensor condition as PNG, in percent of each row.
+
+    Classes have their numbers, as in the paper's figures, and their names at the left and at the bottom. No trial of the test is without
+    contact, so that 0 is no row.
+    """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    side = 3 * (1.6 + 0.2 * len(outcome.confusion[next(iter(CONDITIONS))].names))
+    names = ["0 no contact", *(f"{k} {pattern.name}" for k, pattern in enumerate(TESTS[outcome.test], 1))]
+    side = 3 * (1.6 + 0.2 * len(names)) + _NAMES_INCHES
     figure = Figure(figsize=(side, side), dpi=_DPI)  # fixed margins: a layout engine draws every number twice
     FigureCanvasAgg(figure)
-    figure.subplots_adjust(left=0.04, right=0.98, bottom=0.03, top=0.93, wspace=0.12, hspace=0.22)
+    margin = (_NAMES_INCHES + 0.3) / side
+    figure.subplots_adjust(left=margin, right=0.98, bottom=margin, top=0.93, wspace=0.12, hspace=0.22)
     figure.suptitle(f"{outcome.test}, published method: what (row) was taken for what (column), % (simulated)", fontsize=10)
-    for axes, condition in zip(figure.subplots(3, 3).ravel(), CONDITIONS, strict=True):
+    panels = figure.subplots(3, 3)
+    for axes, condition in zip(panels.ravel(), CONDITIONS, strict=True):
         found = outcome.confusion[condition]
         found.draw_on(axes, title=f"{condition}: {100 * found.accuracy.value:.1f} %")
+        axes.set_ylim(len(names) - 0.5, 0.5)
+    for axes in panels[:, 0]:
+        axes.set_yticks(range(1, len(names)), names[1:], fontsize=_NAME_SIZE)
+        axes.set_ylabel("was")
+    for axes in panels[-1]:
+        axes.set_xticks(range(len(names)), names, fontsize=_NAME_SIZE, rotation=90)
+        axes.set_xlabel("taken for")
     atomic_write(path, png(figure))

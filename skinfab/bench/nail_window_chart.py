@@ -62,6 +62,6 @@ def draw(table: Sequence[Mapping[str, Any]], path: Path) -> None:
         axes.grid(True, which="both", lw=0.3, alpha=0.6)
     window.set_ylabel("right, % (95 % interval over participants)")
     angle.set(ylabel="mean error of the edge's direction, degrees", ylim=(0, None))
-    window.legend(fontsize=7, loc="lower right")
-    angle.legend(fontsize=7, loc="lower left")
+    named = {name: mark for axes in figure.axes for mark, name in zip(*axes.get_legend_handles_labels(), strict=True)}
+    figure.legend(named.values(), named.keys(), loc="outside lower center", ncols=len(named), fontsize=8)
     atomic_write(path, png(figure))
