@@ -92,6 +92,9 @@ def _draw(axes: Axes3D, view: View) -> None:
     axes.set(xlim=middle[0] + [-reach, reach], ylim=middle[1] + [-reach, reach], zlim=middle[2] + [-reach, reach])
     axes.set_box_aspect((1, 1, 1))
     axes.tick_params(labelsize=5, pad=-3)
+    axes.set_xlabel("x, mm", fontsize=5, labelpad=-9)
+    axes.set_ylabel("y, mm", fontsize=5, labelpad=-9)
+    axes.set_zlabel("z, mm", fontsize=5, labelpad=-9)
     axes.set_title(view.title + (" (simulated)" if view.simulated else ""), fontsize=7, parse_math=False)
 
 
