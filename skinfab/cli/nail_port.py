@@ -50,10 +50,14 @@ def watch_port(
     with SerialPort(port, baud=baud or BAUD) as source:
         watch = NailWatch(model, source.stream, samples=samples, every=every, regression=regression)
         clock, end = HostClock(), time.monotonic() + (seconds or math.inf)
-        frames = 0
+        began = clock.now()
+        frames = passed_over = 0
         try:
             while (left := end - time.monotonic()) > 0:
                 if (frame := source.read(min(left, _WAIT_S))) is None:
+                    continue
+                if frame.host_time < began:  # what gathered meanwhile is old, and would make all that follows late
+                    passed_over += 1
                     continue
                 frames += 1
                 if (made := watch.step(frame)) is not None:
@@ -68,6 +72,7 @@ def watch_port(
             "sha256": None,
             "simulated": source.stream.simulated,
             "frames": frames,
+            "passed_over": passed_over,
             "lost": max(watch.lost, counts.lost),
             "window_readings": watch.samples,
             "latency_ms": latency_facts(latency),
@@ -77,12 +82,13 @@ def watch_port(
 
 
 def latency_facts(latency_ms: list[float]) -> dict[str, Any] | None:
-    """Median, 99 %, worst, and counts between edges; None of nothing.
+    """Median, 99 %, worst, and counts between edges, of which the last is None, as the last count has no end; None of nothing.
 
     Examples
     --------
-    >>> latency_facts([0.15, 0.3, 3.0])["worst"]
-    3.0
+    >>> found = latency_facts([0.15, 0.3, 300.0])
+    >>> found["worst"], found["histogram"]["edges"][-2:], found["histogram"]["counts"][-1]
+    (300.0, [50.0, None], 1)
     """
     import numpy as np
 
@@ -91,7 +97,7 @@ def latency_facts(latency_ms: list[float]) -> dict[str, Any] | None:
     each = np.array(latency_ms)
     counts = np.histogram(each, [0.0, *_EDGES_MS, np.inf])[0]
     quantiles = {name: float(np.quantile(each, part)) for name, part in (("median", 0.5), ("p99", 0.99), ("worst", 1.0))}
-    return {**quantiles, "histogram": {"edges": [0.0, *_EDGES_MS], "counts": counts.tolist()}}
+    return {**quantiles, "histogram": {"edges": [0.0, *_EDGES_MS, None], "counts": counts.tolist()}}
 
 
 class _Speaker:

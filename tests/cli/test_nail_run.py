@@ -106,6 +106,34 @@ def test_run_on_a_port(model: Path, tmp_path: Path, capsys: pytest.CaptureFixtur
     assert found["touched"]["none"] > 0.2 * found["windows"]
 
 
+def test_what_gathers_before_the_first_reading_is_passed_over_and_makes_nothing_late(
+    model: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from skinfab.fingertip.nail import live
+    from skinfab.readout.source import HostClock
+
+    ready: list[float] = []
+    seen: list[float] = []
+
+    class Awaited(live.NailWatch):
+        def __init__(self, *args, **options):  # type: ignore[no-untyped-def]
+            super().__init__(*args, **options)
+            time.sleep(0.2)
+            ready.append(HostClock().now())
+
+        def step(self, frame):  # type: ignore[no-untyped-def]
+            seen.append(frame.host_time)
+            return super().step(frame)
+
+    frames = list(itertools.islice(nail_frames(participant(np.random.default_rng(0)), [None], hold_s=0.4), 1120))
+    with pytest.MonkeyPatch.context() as patched, PtyServer(nail_stream(), frames) as device:
+        patched.setattr(live, "NailWatch", Awaited)
+        assert main(["nail", "run", str(model), "--port", str(device.path), "--seconds", "1", "-o", str(tmp_path / "o"), "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert seen and min(seen) >= ready[0] - 0.001
+    assert found["passed_over"] > 100 and found["frames"] == len(seen) and found["latency_ms"]["histogram"]["edges"][-1] is None
+
+
 def test_a_machine_that_cannot_keep_up_is_told(model: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     from skinfab.fingertip.nail import live
 
