@@ -92,6 +92,7 @@ def run(args: argparse.Namespace) -> int:
 
 def _from_log(args: argparse.Namespace, content: Any) -> tuple[list[Told], dict[str, Any]]:
     from skinfab.fingertip.nail.live import decide_log
+    from skinfab.fingertip.nail.units import units_said
     from skinfab.readout.checks import check_times
     from skinfab.readout.logs.log import read_log
 
@@ -107,6 +108,10 @@ def _from_log(args: argparse.Namespace, content: Any) -> tuple[list[Told], dict[
         "window_readings": samples,
         "notes": [*log.notes, *(f"{log.file}: {wrong}" for wrong in check_times(log.recording))],
     }
+    said = content.made_from.get("units_said")
+    if said is not None and said != units_said(log.recording.stream):
+        one, other = ("model's logs declare", "this log does not") if said else ("log declares", "the model's did not")
+        facts["notes"].append(f"the {one} the units, and {other}: what says nothing is taken for G and deg/s, and wrong in other units")
     if args.labels:
         judged, notes = _judged(args.labels, log, told, samples, content)
         facts |= judged | {"notes": [*facts["notes"], *notes]}
@@ -183,7 +188,8 @@ def _facts(args: argparse.Namespace, content: Any, told: Sequence[Told], facts: 
         notes.append(f"the motor did not turn in {off:.1%} of the windows, which were not decided")
     if (strange := sum(each.strange for each in decisions) / len(decisions)) > 0.2:
         notes.append(
-            f"{strange:.0%} of the windows are like nothing the model learned from; is it the same finger, and the sensor where it was?"
+            f"{strange:.0%} of the windows are like nothing the model learned from; is it the same finger, the sensor where it was, "
+            "and all in the same units?"
         )
     if (latency := facts.get("latency_ms")) and latency["median"] > 1000 * _BEHIND_S:
         notes.append(

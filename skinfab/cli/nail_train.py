@@ -54,6 +54,8 @@ def run(args: argparse.Namespace) -> int:
     held["whole trials"] = judge(made, splits, samples=None, published=published, across=across)
     rows = _learned_rows(trials, across)
     notes += made.notes
+    if len({each.units_said for each in trials}) > 1:
+        notes.append("some logs declare their units and others do not, which are taken for G and deg/s")
     regression = None
     if published:
         model: Any = made.fit_published(rows)
@@ -77,6 +79,8 @@ def run(args: argparse.Namespace) -> int:
         "notes": notes,
     }
     kept = {key: result[key] for key in ("simulated", "labels", "participants", "trials", "held_out")}
+    said = {trials[k].units_said for k in rows.tolist()}
+    kept["units_said"] = said == {True}
     kept["learned"] = _learned_from(trials, rows.tolist())
     save_nail(args.output, NailFile(model, regression, kept))
     result["file"] = str(args.output)

@@ -16,8 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skinfab.errors import InputError
-from skinfab.fingertip.nail.labels import CHANNELS, NOTHING
+from skinfab.fingertip.nail.labels import NOTHING
 from skinfab.fingertip.nail.phasors import ComplexArray, reference_of, turned, turned_phasors
+from skinfab.fingertip.nail.units import CHANNELS
 from skinfab.fingertip.splits import group_folds
 
 FloatArray = NDArray[np.float64]

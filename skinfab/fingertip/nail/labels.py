@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from skinfab.errors import InputError
 from skinfab.files import atomic_write
+from skinfab.fingertip.nail.units import channel_columns, units_said
 from skinfab.readout.checks import check_times
 from skinfab.readout.frame import Recording
 from skinfab.readout.logs.log import read_log
@@ -28,8 +29,6 @@ from skinfab.spreadsheet import read_csv_lines
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-#: The six channels, in the order of every array here: acceleration along, angular velocity about x, y and z.
-CHANNELS = ("Ax", "Ay", "Az", "Gx", "Gy", "Gz")
 #: The label of a finger that touches nothing.
 NOTHING = "none"
 #: A larger table is none of trials.
@@ -97,6 +96,8 @@ class Trial:
     rate_hz : float
     sha256 : str
         Of the log; empty where there is no file.
+    units_said : bool
+        Does the log declare the units? They are G and deg/s then; else nobody knows.
     """
 
     label: Label
@@ -104,6 +105,7 @@ class Trial:
     saturated: NDArray[np.bool_]
     rate_hz: float
     sha256: str = ""
+    units_said: bool = False
 
 
 def write_labels(path: str | Path, labels: Sequence[Label], *, simulated: bool) -> None:
@@ -178,7 +180,7 @@ def read_trials(path: str | Path) -> tuple[list[Trial], bool, list[str]]:
     """
     path = Path(path)
     labels, simulated = read_labels(path)
-    logs: dict[str, tuple[FloatArray, FloatArray, NDArray[np.bool_], float, str]] = {}
+    logs: dict[str, tuple[FloatArray, FloatArray, NDArray[np.bool_], float, str, bool]] = {}
     trials, notes = [], []
     for each in labels:
         if each.log not in logs:
@@ -186,9 +188,9 @@ def read_trials(path: str | Path) -> tuple[list[Trial], bool, list[str]]:
             notes += [f"{log.file}: {note}" if log.file not in note else note for note in log.notes]
             simulated |= log.recording.stream.simulated
             time, values, bad, rate = _evenly(log.recording)
-            logs[each.log] = (time - time[0], values, bad, rate, log.sha256)
+            logs[each.log] = (time - time[0], values, bad, rate, log.sha256, units_said(log.recording.stream))
             notes += [f"{log.file}: {wrong}" for wrong in check_times(log.recording)]
-        time, values, bad, rate, sha256 = logs[each.log]
+        time, values, bad, rate, sha256, said = logs[each.log]
         first, last = np.searchsorted(time, [each.start_s - 0.5 / rate, each.end_s - 0.5 / rate])
         if last - first < 2 or time[-1] < each.end_s - 1.5 / rate:
             raise InputError(
@@ -201,7 +203,7 @@ def read_trials(path: str | Path) -> tuple[list[Trial], bool, list[str]]:
                 f"{path}: {each.log} has {there.sum()} of the {last - first} readings of its trial from {each.start_s:g} to "
                 f"{each.end_s:g} s; leave that row out, or record the trial again"
             )
-        trials.append(Trial(each, values[first:last], bad[first:last], rate, sha256))
+        trials.append(Trial(each, values[first:last], bad[first:last], rate, sha256, said))
     return trials, simulated, notes
 
 
@@ -211,18 +213,14 @@ def six_channels(recording: Recording) -> tuple[FloatArray, NDArray[np.bool_]]:
     Raises
     ------
     InputError
-        There is none of the channels.
+        As `channel_columns`.
     """
-    stream = recording.stream
-    there = [name in stream.names for name in CHANNELS]
-    if not any(there):
-        raise InputError(f"stream {stream.name} has none of the channels {', '.join(CHANNELS)}; it has {', '.join(stream.names)}")
     values = np.full((len(recording), 6), np.nan)
     saturated = np.zeros((len(recording), 6), dtype=bool)
-    for k, name in enumerate(CHANNELS):
-        if there[k]:
-            values[:, k] = recording.column(name)
-            saturated[:, k] = recording.saturated[:, stream.index(name)]
+    for k, (column, scale) in enumerate(channel_columns(recording.stream)):
+        if column >= 0:
+            values[:, k] = scale * recording.column(recording.stream.names[column])
+            saturated[:, k] = recording.saturated[:, column]
     return values, saturated
 
 

@@ -15,10 +15,11 @@ from numpy.typing import NDArray
 from skinfab.errors import InputError
 from skinfab.fingertip.nail.classify import NailModel
 from skinfab.fingertip.nail.histogram_model import HistogramModel
-from skinfab.fingertip.nail.labels import CHANNELS, places_of, rate_of, six_channels
+from skinfab.fingertip.nail.labels import places_of, rate_of, six_channels
 from skinfab.fingertip.nail.phasors import FIND_SHORTEST, SHORTEST, find_drive, turns
 from skinfab.fingertip.nail.reader import Decision, Reader
 from skinfab.fingertip.nail.regress import Continuous, Regression
+from skinfab.fingertip.nail.units import channel_columns
 from skinfab.readout.frame import Frame, Recording, Stream
 
 FloatArray = NDArray[np.float64]
@@ -87,7 +88,7 @@ class NailWatch:
     Raises
     ------
     InputError
-        The stream has none of the channels, its rate is not the model's, or the window is too short or too long.
+        As `channel_columns`; the stream's rate is not the model's, or the window is too short or too long.
 
     Attributes
     ----------
@@ -114,15 +115,14 @@ class NailWatch:
             raise InputError(
                 f"stream {stream.name} has {rate:.4g} readings a second and the model learned from {model.rate_hz:.4g}; train one anew"
             )
-        if not any(name in stream.names for name in CHANNELS):
-            raise InputError(f"stream {stream.name} has none of the channels {', '.join(CHANNELS)}; it has {', '.join(stream.names)}")
         self._published = isinstance(model, HistogramModel)
         self.samples = model.samples if isinstance(model, HistogramModel) else samples
         if not SHORTEST <= self.samples <= _LONGEST:
             raise InputError(f"a window of {self.samples} readings is none; give {SHORTEST} to {_LONGEST}")
         self.every, self.lost = max(every, 1), 0
         self._rate = rate
-        self._columns = [stream.names.index(name) if name in stream.names else -1 for name in CHANNELS]
+        chosen = channel_columns(stream)
+        self._columns, self._scales = [k for k, _ in chosen], [scale for _, scale in chosen]
         self._reader: _Published | Reader
         if isinstance(model, HistogramModel):
             self._reader = _Published(model)
@@ -140,7 +140,11 @@ class NailWatch:
         """Take a frame; a decision where it is time for one."""
         usable = frame.valid if self._published else frame.valid & ~frame.saturated
         values = np.where(usable, frame.values, np.nan)
-        return self.take(np.array([values[k] if k >= 0 else math.nan for k in self._columns]), frame.sequence, frame.device_time)
+        return self.take(
+            np.array([scale * values[k] if k >= 0 else math.nan for k, scale in zip(self._columns, self._scales, strict=True)]),
+            frame.sequence,
+            frame.device_time,
+        )
 
     def take(self, row: FloatArray, sequence: int, time_s: float) -> Told | None:
         """Take a reading of the six channels, NaN where there is none, with its place in the device's count."""

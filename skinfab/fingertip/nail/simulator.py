@@ -21,8 +21,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from skinfab.errors import InputError
 from skinfab.fingertip.nail.finger import EDGE_POINTS, ComplexArray, Finger, contact_matrix, motor_force, respond
-from skinfab.fingertip.nail.labels import CHANNELS
 from skinfab.fingertip.nail.patterns import Pattern
+from skinfab.fingertip.nail.units import CHANNELS
 from skinfab.readout.frame import Channel, Frame, Recording, Stream
 from skinfab.readout.paced import PacedFrames
 

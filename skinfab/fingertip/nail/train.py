@@ -16,11 +16,12 @@ from skinfab.errors import InputError
 from skinfab.fingertip.confusion import Confusion
 from skinfab.fingertip.nail.classify import NailModel, fit_phasors
 from skinfab.fingertip.nail.histogram_model import HistogramModel, fit_histograms
-from skinfab.fingertip.nail.labels import CHANNELS, NOTHING, Trial
+from skinfab.fingertip.nail.labels import NOTHING, Trial
 from skinfab.fingertip.nail.model_file import class_names
 from skinfab.fingertip.nail.phasors import BLOCK, FIND_SHORTEST, ComplexArray, find_drive, lock_in, reference_of, turned_phasors
 from skinfab.fingertip.nail.published import modes
 from skinfab.fingertip.nail.regress import Regression, angle_apart, continuous_of, learnable, targets_of
+from skinfab.fingertip.nail.units import CHANNELS
 from skinfab.fingertip.splits import Split, group_folds, leave_one_out
 
 FloatArray = NDArray[np.float64]
