@@ -19,13 +19,13 @@ from skinfab.skin import Skin
 MESHES = Path(__file__).parents[3] / "meshes"
 
 
-def in_front(skin: Skin, camera, x: float, y: float, reach: float = 8.0) -> tuple[int, np.ndarray]:
-    """The vertex nearest to the viewer about a pixel, and where a click means it: a little inwards, for the object's rim."""
+def in_front(skin: Skin, camera, x: float, y: float, *, inwards: float = 0.0, reach: float = 8.0) -> tuple[int, np.ndarray]:
+    """The vertex nearest to the viewer about a pixel, and where a click means it: at the object's rim a little inwards."""
     at = camera.to_screen(skin.object.V)
     near = np.flatnonzero(np.hypot(*(at[:, :2] - (x, y)).T) < reach)
     vertex = int(near[at[near, 2].argmin()])
     middle = np.array([camera.width, camera.height]) / 2
-    return vertex, at[vertex, :2] + 2.5 * (middle - at[vertex, :2]) / np.linalg.norm(middle - at[vertex, :2])
+    return vertex, at[vertex, :2] + inwards * (middle - at[vertex, :2]) / np.linalg.norm(middle - at[vertex, :2])
 
 
 def cut_by_clicks(window: Window, skin: Skin) -> Skin:
@@ -33,7 +33,7 @@ def cut_by_clicks(window: Window, skin: Skin) -> Skin:
     camera = window.look(skin, "front")
     at = camera.to_screen(skin.object.V)
     x, top, bottom = at[:, 0].mean(), at[:, 1].min(), at[:, 1].max()
-    (base, click_base), (tip, click_tip) = in_front(skin, camera, x, bottom), in_front(skin, camera, x, top + 30)
+    (base, click_base), (tip, click_tip) = in_front(skin, camera, x, bottom, inwards=2.5), in_front(skin, camera, x, top + 30)
     window.key("c")
     window.click(OBJECT, click_base)
     assert window.status == "Now the next point; Esc ends the line."
