@@ -34,7 +34,7 @@ def draw(table: Sequence[Mapping[str, Any]], path: Path) -> None:
                 axes.plot([r[over] for r in rows], [r["p95_mm"] for r in rows], ":", color=colour, lw=1, label=f"{way}, 95 %")
             usual = [r for r in rows if r[over] == (USUAL[0] if over == "span_deg" else USUAL[1]) and way == "offset fitted"]
             for r in usual:
-                axes.plot(r[over], r[key], "o", ms=14, mfc="none", mec="#555555", mew=1.4)
+                axes.plot(r[over], r[key], "o", ms=14, mfc="none", mec="#555555", mew=1.4, label="as simulate makes it", zorder=1)
         axes.set_xscale("log")
         ticks = sorted({row[over] for row in table})
         axes.set_xticks(ticks, [f"{each:g}" for each in ticks], fontsize=8)
@@ -47,5 +47,5 @@ def draw(table: Sequence[Mapping[str, Any]], path: Path) -> None:
         axes.axhspan(min(paper_errors()), max(paper_errors()), color="#999999", alpha=0.25, lw=0, label="the paper's table 3")
     panels[2].axhline(0.95, color="#555555", lw=1, ls="--")
     panels[2].set(ylabel="errors within the stated 95 %", ylim=(0, 1.02))
-    panels[0].legend(fontsize=7)
+    panels[0].legend(fontsize=7, markerscale=0.6)
     atomic_write(path, png(figure))

@@ -107,7 +107,7 @@ def train(args: argparse.Namespace) -> int:
     }
     with staged_folder(args.output) as folder:
         save_texture(trained, folder / "model.npz", made_from=made_from)
-        trained.confusion.draw(folder / "confusion.png", title="Textures, specimens held out", simulated=simulated)
+        trained.confusion.draw(folder / "confusion.png", title="Textures held out", simulated=simulated)
         (folder / "result.json").write_text(json.dumps(result, indent=1, allow_nan=False) + "\n")
     if args.json:
         print(json.dumps(result, allow_nan=False))
