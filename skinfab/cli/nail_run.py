@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 _EVERY = 8
 #: Decisions that come so much later than their readings, s, in the median, are ever more behind.
 _BEHIND_S = 0.2
+#: Where more of the windows are like nothing learned, nothing was decided.
+_ALL_STRANGE = 0.95
 FILES = ("decisions.csv", "nail.png", "result.json")
 
 
@@ -80,14 +82,16 @@ def run(args: argparse.Namespace) -> int:
         )
     result = _facts(args, content, told, facts)
     _write(args.output, told, names, result)
+    # The decisions are there to be looked at; whoever goes by the status must not take them for touches.
+    status = RefusedError.exit_status if result["strange"] > _ALL_STRANGE else 0
     if args.json:
         print(json.dumps(result, allow_nan=False))
-        return 0
+        return status
     steps.say(result["notes"])
     for line in _lines(result):
         print(line)
     print(f"{args.output}: {', '.join(FILES)}")
-    return 0
+    return status
 
 
 def _from_log(args: argparse.Namespace, content: Any) -> tuple[list[Told], dict[str, Any]]:
@@ -197,7 +201,7 @@ def _facts(args: argparse.Namespace, content: Any, told: Sequence[Told], facts: 
         )
     if facts["lost"]:
         notes.append(f"{facts['lost']} frames were lost on the way")
-    drives = np.array([each.drive_hz for each in told])
+    drives = np.array([each.drive_hz for each in told if each.decision is not None and not each.decision.strange])
     known = drives[np.isfinite(drives)]
     return {
         **facts,
@@ -207,7 +211,9 @@ def _facts(args: argparse.Namespace, content: Any, told: Sequence[Told], facts: 
         "windows": len(told),
         "undecided": len(told) - len(decisions),
         "touched": dict(Counter(each.label for each in decisions).most_common()),
-        "drive_hz": {"low": float(known.min()), "high": float(known.max())} if len(known) else None,
+        "drive_hz": dict(zip(("low", "median", "high"), np.quantile(known, [0.05, 0.5, 0.95]).tolist(), strict=True))
+        if len(known)
+        else None,
         "strange": strange,
         "left_out": left_out,
         "notes": notes,
@@ -235,7 +241,16 @@ def _write(output: Path, told: Sequence[Told], names: list[str], result: dict[st
         found = [_cell(getattr(d.continuous, name)) for name in numbers]
         flags = [int(d.contact), int(d.strange)]
         rows.writerow(
-            [f"{each.time_s:.6f}", d.label, _cell(d.confidence), *flags, *found, d.missing, _cell(each.drive_hz), _cell(each.left_out)]
+            [
+                f"{each.time_s:.6f}",
+                d.label,
+                "" if d.strange else _cell(d.confidence),
+                *flags,
+                *found,
+                d.missing,
+                _cell(each.drive_hz),
+                _cell(each.left_out),
+            ]
         )
     with staged_folder(output) as folder:
         atomic_write(folder / "decisions.csv", text.getvalue())
@@ -251,9 +266,10 @@ def _cell(value: float) -> str:
 def _lines(result: dict[str, Any]) -> list[str]:
     made = " (simulated)" if result["simulated"] else ""
     touched = ", ".join(f"{name} {100 * count / result['windows']:.0f} %" for name, count in result["touched"].items())
-    lines = [f"{result['source']}{made}: {result['windows']} windows of {1000 * result['window_s']:.1f} ms: {touched}"]
+    lines = ["nothing is decided: the windows are like nothing the model learned from"] * (result["strange"] > _ALL_STRANGE)
+    lines += [f"{result['source']}{made}: {result['windows']} windows of {1000 * result['window_s']:.1f} ms: {touched}"]
     if drive := result["drive_hz"]:
-        lines.append(f"the motor turned at {drive['low']:.1f} to {drive['high']:.1f} Hz")
+        lines.append(f"the motor turned at {drive['median']:.1f} Hz (90 % of the time {drive['low']:.1f} to {drive['high']:.1f})")
     if labels := result.get("labels"):
         rate = labels["accuracy"]
         share = "-" if rate["value"] is None else f"{100 * rate['value']:.1f} % [{100 * rate['low']:.1f}, {100 * rate['high']:.1f}]"

@@ -72,23 +72,27 @@ def test_run_on_a_log(logs: Path, model: Path, tmp_path: Path, capsys: pytest.Ca
     labels = found["labels"]  # the 28 trials of the training part are in the model
     assert (labels["trials"], labels["learned_from"]) == (12, 28) and labels["accuracy"]["low"] < labels["accuracy"]["value"] > 0.5
     assert "the model learned from 28 of the 40 trials, which are not counted" in found["notes"]
-    assert 160 < found["drive_hz"]["low"] < found["drive_hz"]["high"] < 180 and sum(found["touched"].values()) == found["windows"]
+    assert (
+        160 < found["drive_hz"]["low"] < found["drive_hz"]["high"] < 180
+        and abs(found["drive_hz"]["median"] - 169) < 0.5
+        and sum(found["touched"].values()) == found["windows"]
+    )
     text = (tmp_path / "o/decisions.csv").read_text().splitlines()
     assert text[0] == "# simulated: true"
     rows = list(csv.DictReader(text[1:]))
     assert len(rows) == found["windows"] and {each["missing"] for each in rows} == {"0"}
-    touched = next(each for each in rows if each["contact"] == "1")
+    touched = next(each for each in rows if each["contact"] == "1" and each["strange"] == "0")
     assert abs(float(touched["x_mm"])) < 10 and touched["angle_deg"] == "" and 0 < float(touched["confidence"]) <= 1
 
 
 def test_run_says_it_in_words(logs: Path, model: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     capsys.readouterr()
     assert (
-        main(["nail", "run", str(model), str(logs / "participant-2.csv"), "--window", "16", "--every", "64", "-o", str(tmp_path / "o")])
+        main(["nail", "run", str(model), str(logs / "participant-1.csv"), "--window", "16", "--every", "64", "-o", str(tmp_path / "o")])
         == 0
     )
     said = capsys.readouterr()
-    assert "participant-2.csv (simulated):" in said.out and "windows of 11.4 ms" in said.out and "the motor turned at" in said.out
+    assert "participant-1.csv (simulated):" in said.out and "windows of 11.4 ms" in said.out and "the motor turned at 169." in said.out
 
 
 def test_run_on_a_port(model: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -190,3 +194,17 @@ def test_a_motor_that_is_off_is_refused(model: Path, tmp_path: Path, capsys: pyt
     (tmp_path / "off.csv").write_text("time_s,Ax,Ay,Az,Gx,Gy,Gz\n" + rows + "\n")
     assert main(["nail", "run", str(model), str(tmp_path / "off.csv"), "-o", str(tmp_path / "o")]) == 3
     assert "the motor does not turn" in capsys.readouterr().err and not (tmp_path / "o").exists()
+
+
+def test_another_instrument_is_refused(logs: Path, model: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    capsys.readouterr()
+    lines = (logs / "participant-1.csv").read_text().splitlines()
+    head = next(k for k, line in enumerate(lines) if ",Ax," in line)
+    names, rows = lines[head].split(","), [line.split(",") for line in lines[head + 1 : head + 1500]]
+    at = [names.index(name) for name in ("Ax", "Ay", "Az", "Gx", "Gy", "Gz")]
+    swapped = "\n".join(f"{k / 1400:.6f}," + ",".join(row[j] for j in at[::-1]) for k, row in enumerate(rows))
+    (tmp_path / "a.csv").write_text("time_s,Ax,Ay,Az,Gx,Gy,Gz\n" + swapped + "\n")
+    assert main(["nail", "run", str(model), str(tmp_path / "a.csv"), "-o", str(tmp_path / "o")]) == 3
+    assert capsys.readouterr().out.startswith("nothing is decided: the windows are like nothing the model learned from")
+    table = list(csv.DictReader(line for line in (tmp_path / "o/decisions.csv").read_text().splitlines() if line[0] != "#"))
+    assert all((each["confidence"] == "") == (each["strange"] == "1") for each in table if each["label"])
