@@ -223,10 +223,10 @@ def _facts(
     }
     for log, (contacts, events) in zip(logs, found, strict=True):
         touching, trusted = contacts.touching, contacts.trusted
-        if (missed := int((contacts.missed & touching).sum())) * 2 > int(touching.sum()):
+        if (missed := int(((contacts.missed | contacts.mounted) & touching).sum())) * 2 > int(touching.sum()):
             out["notes"].append(
-                f"{log.name}: at {missed} of {int(touching.sum())} samples with a force its line misses the fingertip, or it would pull; "
-                "is the force's sign that of the force on the fingertip, and are its frame and size right?"
+                f"{log.name}: at {missed} of {int(touching.sum())} samples with a force its line comes from where nothing touches "
+                "the fingertip; is the force's sign that of the force on the fingertip, and are its frame and size right?"
             )
         out["logs"][log.name] = {
             "sha256": log.sha256,

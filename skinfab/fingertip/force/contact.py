@@ -33,8 +33,9 @@ FLAGS = {
     4: "the force's line misses the surface",
     8: "a moment about the force's own line: no single point contact",
     16: "the force's line enters the surface more than once",
+    32: "the force's line enters by the face that the fingertip is mounted with",
 }
-_INVALID, _NO_CONTACT, _MISSED, _TORSION, _AMBIGUOUS = FLAGS
+_INVALID, _NO_CONTACT, _MISSED, _TORSION, _AMBIGUOUS, _MOUNTED = FLAGS
 
 
 @dataclass(frozen=True)
@@ -138,6 +139,11 @@ class Contacts:
         """Where the line enters the surface more than once; the outermost entry was taken."""
         return (self.flags & _AMBIGUOUS) != 0
 
+    @property
+    def mounted(self) -> BoolArray:
+        """Where the line enters a mesh by its flat bottom, which nothing can touch: the force's sign or frame is wrong."""
+        return (self.flags & _MOUNTED) != 0
+
     def words(self, k: int) -> str:
         """What is wrong with the k-th sample; empty where nothing is."""
         return "; ".join(text for bit, text in FLAGS.items() if self.flags[k] & bit)
@@ -195,6 +201,7 @@ def locate(
         _entry.enter_hemisphere(F, M, float(surface.radius), *surface.frame, *limits, out, flags)
     else:
         surface.enter(F, M, *limits, out, flags)
+        flags[surface.at_the_mount(out[:, :3], out[:, 3:6]) & (flags & (_INVALID | _NO_CONTACT) == 0)] |= _MOUNTED
     return Contacts(out[:, :3], out[:, 3:6], out[:, 6], out[:, 7], out[:, 8], out[:, 9], out[:, 10], flags)
 
 

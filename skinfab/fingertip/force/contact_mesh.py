@@ -9,6 +9,11 @@ from skinfab.errors import InputError
 from skinfab.mesh.model import Mesh
 
 FloatArray = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
+
+#: The face that a fingertip is mounted with looks down (-z) within this angle, rad, lies as low as anything does, within this part of
+#: the fingertip's size, and has at least this part of its area: what is round below has no such face.
+MOUNT_RAD, MOUNT_PART, MOUNT_AREA = 0.1, 0.002, 0.05
 
 
 class TipMesh:
@@ -17,7 +22,8 @@ class TipMesh:
     Parameters
     ----------
     mesh : Mesh
-        Closed, its triangles counter-clockwise from outside, in the sensor's frame, mm.
+        Closed, its triangles counter-clockwise from outside, in the sensor's frame, mm; its flat bottom (-z), where it has one, is
+        what it is mounted with.
 
     Raises
     ------
@@ -41,6 +47,7 @@ class TipMesh:
 
         self.mesh = mesh
         self.size = float(np.linalg.norm(mesh.bbox[1] - mesh.bbox[0]))
+        self._mount_z = _mount(mesh, MOUNT_PART * self.size)
         order, self._lo, self._hi, self._child, self._first = _entry_mesh.build_tree(mesh.V[mesh.F])
         self._corners = np.ascontiguousarray(mesh.V[mesh.F][order])
         self._normals = np.ascontiguousarray(mesh.face_normals[order])
@@ -65,6 +72,21 @@ class TipMesh:
         limits = (least_force, force_sd, moment_sd, torsion_sd)
         tree = (self._corners, self._normals, self._lo, self._hi, self._child, self._first)
         _entry_mesh.enter_mesh(F, M, *tree, self.size, *limits, out, flags)
+
+    def at_the_mount(self, point: FloatArray, normal: FloatArray) -> BoolArray:
+        """Which points (n, 3), with normals into the fingertip, lie on the face that it is mounted with."""
+        mount: BoolArray = (normal[:, 2] > np.cos(MOUNT_RAD)) & (point[:, 2] < self._mount_z)
+        return mount
+
+
+def _mount(mesh: Mesh, thickness: float) -> float:
+    """Below which height there is nothing but the face that the fingertip is mounted with; -inf where there is none."""
+    p = mesh.V[mesh.F]
+    top = float(mesh.V[:, 2].min()) + thickness
+    across = np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0])
+    area = np.linalg.norm(across, axis=1)
+    flat = (p[:, :, 2].max(axis=1) < top) & (-across[:, 2] > np.cos(MOUNT_RAD) * area)
+    return top if area[flat].sum() > MOUNT_AREA * area.sum() else -np.inf
 
 
 def _require_closed(mesh: Mesh) -> None:

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import trimesh
 
 from skinfab.errors import InputError
 from skinfab.fingertip.force.contact import locate
@@ -121,6 +122,21 @@ def test_what_is_no_fingertip() -> None:
         TipMesh(Mesh(mesh.V, mesh.F[:0], "empty"))
     with pytest.raises(InputError, match="no numbers"):
         TipMesh(Mesh(mesh.V * np.nan, mesh.F, "nan"))
+
+
+def test_nothing_touches_what_it_is_mounted_with() -> None:
+    """The signs of a sensor that reports the reaction: every line enters a half ball by its flat side, which must not be trusted."""
+    whole = ball(3)
+    half = trimesh.Trimesh(whole.V, whole.F).slice_plane([0, 0, 0], [0, 0, 1], cap=True)
+    tip = TipMesh(Mesh(np.asarray(half.vertices), np.asarray(half.faces), "half"))
+    rng = np.random.default_rng(0)
+    point = rng.standard_normal((200, 3)) * (1, 1, 0) * 0.2 + (0, 0, 1)
+    point *= np.abs(half.vertices).max() / np.linalg.norm(point, axis=1)[:, None]
+    right, turned = locate(-point, 0 * point, tip), locate(point, 0 * point, tip)
+    assert right.trusted.all() and not right.mounted.any()
+    assert turned.mounted.all() and not turned.trusted.any() and "mounted with" in turned.words(0)
+    # A ball has no flat side.
+    assert not locate(point, 0 * point, TipMesh(whole)).mounted.any()
 
 
 def test_nothing_there_and_what_is_no_number() -> None:
