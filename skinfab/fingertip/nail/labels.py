@@ -149,6 +149,9 @@ def _label(cells: dict[str, str], where: str) -> Label:
     if any(not cells.get(name, "").strip() for name in _NEEDED):
         raise InputError(f"{where}: {', '.join(_NEEDED)} must all be there")
     words = {name: cells.get(name, "").strip() for name in _WORDS}
+    # Spreadsheets make capitals of their own: "Test" taken for training would flatter the model.
+    words["part"] = words["part"].lower()
+    words["label"] = NOTHING if words["label"].lower() == NOTHING else words["label"]
     numbers = {name: _number(cells.get(name, ""), f"{where}, {name}") for name in _COLUMNS if name not in _WORDS}
     if not 0 <= numbers["start_s"] < numbers["end_s"]:
         raise InputError(f"{where}: {numbers['start_s']:g} to {numbers['end_s']:g} s is no time of a log; the start must be before the end")

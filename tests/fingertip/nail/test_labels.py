@@ -141,3 +141,8 @@ def test_a_trial_in_a_hole_is_told(tmp_path: Path) -> None:
     write_labels(tmp_path / "l.csv", [Label("a.csv", 0.4, 0.6, "pin")], simulated=True)
     with pytest.raises(InputError, match=r"has 0 of the 280 readings of its trial from 0.4 to 0.6 s; leave that row out"):
         read_trials(tmp_path / "l.csv")
+
+
+def test_capitals_of_a_spreadsheet(tmp_path: Path) -> None:
+    (tmp_path / "l.csv").write_text("log,start_s,end_s,label,part\na.csv,0,1,None,Test\na.csv,1,2,Edge,TRAIN\n")
+    assert [(each.label, each.part) for each in read_labels(tmp_path / "l.csv")[0]] == [("none", "test"), ("Edge", "train")]
