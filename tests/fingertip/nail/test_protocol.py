@@ -17,7 +17,7 @@ FULL = "AxAyAzGxGyGz"
 
 @pytest.fixture(scope="module")
 def outcomes() -> dict[str, Outcome]:
-    """Half as many participants again as in the paper; of ten estimates a trial there is one, which changes the accuracies by less than a point."""
+    """Half as many participants again as in the paper; one estimate a trial for ten, which changes the accuracies by less than a point."""
 
     def full(of: Session) -> dict[str, np.ndarray]:
         return published_answers(of, (FULL, "AxAy"))
