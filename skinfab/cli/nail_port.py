@@ -18,6 +18,8 @@ _WAIT_S = 0.2
 #: A contact is said when so many decisions in a row agree: of windows of 33 readings, 8 apart, the fifth shares none with the first.
 _AGREE = 5
 _OFF = "the motor does not turn"
+#: After so long without a frame it is said that nothing comes, s.
+_SILENT_S = 2.0
 #: Edges of the histogram of latencies, ms.
 _EDGES_MS = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0)
 
@@ -40,6 +42,7 @@ def watch_port(
     InputError
         The port cannot be read, or what it sends is not what the model learned from.
     """
+    from skinfab.cli.record import outage_notes, outages
     from skinfab.fingertip.nail.live import NailWatch
     from skinfab.readout.serial_port import BAUD, SerialPort
     from skinfab.readout.source import HostClock
@@ -50,12 +53,14 @@ def watch_port(
     with SerialPort(port, baud=baud or BAUD) as source:
         watch = NailWatch(model, source.stream, samples=samples, every=every, regression=regression)
         clock, end = HostClock(), time.monotonic() + (seconds or math.inf)
-        began = clock.now()
+        began, began_at, heard = clock.now(), time.time(), time.monotonic()
         frames = passed_over = 0
         try:
             while (left := end - time.monotonic()) > 0:
                 if (frame := source.read(min(left, _WAIT_S))) is None:
+                    speaker.silence(port, time.monotonic() - heard)
                     continue
+                heard = time.monotonic()
                 if frame.host_time < began:  # what gathered meanwhile is old, and would make all that follows late
                     passed_over += 1
                     continue
@@ -66,7 +71,7 @@ def watch_port(
                     speaker.hear(made)
         except KeyboardInterrupt:
             signal.setitimer(signal.ITIMER_REAL, 0)  # the way to end it: it has got through, and is not to come a second time
-        counts = source.counts
+        counts, gone = source.counts, outages(source, began_at, time.time())
         facts = {
             "source": port,
             "sha256": None,
@@ -76,7 +81,8 @@ def watch_port(
             "lost": max(watch.lost, counts.lost),
             "window_readings": watch.samples,
             "latency_ms": latency_facts(latency),
-            "notes": [f"{counts.bad} packets were damaged"] * bool(counts.bad),
+            "outages": gone,
+            "notes": [*outage_notes(port, gone), *[f"{counts.bad} packets were damaged"] * bool(counts.bad)],
         }
     return told, facts
 
@@ -105,6 +111,13 @@ class _Speaker:
 
     def __init__(self, quiet: bool) -> None:
         self._quiet, self._said, self._last, self._agree = quiet, "", "", 0
+
+    def silence(self, port: str, lasts_s: float) -> None:
+        """Say once that nothing comes."""
+        silent = f"nothing comes from {port}; is it plugged in, and does it send?"
+        if not self._quiet and lasts_s >= _SILENT_S and self._said != silent:
+            self._said = silent
+            print(silent, flush=True)
 
     def hear(self, told: Told) -> None:
         """Take a decision; print it where it is news."""

@@ -12,6 +12,7 @@ import pytest
 from skinfab.cli.main import main
 from skinfab.fingertip.nail.patterns import TESTS
 from skinfab.fingertip.nail.simulator import nail_frames, nail_stream, participant
+from skinfab.readout.faults import Faults
 from skinfab.readout.pty_server import PtyServer
 
 FILES = ["decisions.csv", "nail.png", "result.json"]
@@ -110,6 +111,23 @@ def test_run_on_a_port(model: Path, tmp_path: Path, capsys: pytest.CaptureFixtur
     assert found["touched"]["none"] > 0.2 * found["windows"]
 
 
+def test_a_port_that_goes_away_is_told(
+    model: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Pulled out after 0.2 s, for longer than is waited: said while nothing comes, and of what came."""
+    from skinfab.cli import nail_port
+
+    monkeypatch.setattr(nail_port, "_SILENT_S", 0.3)
+    frames = list(itertools.islice(nail_frames(participant(np.random.default_rng([0, 1])), [None], hold_s=0.4), 1120))
+    with PtyServer(nail_stream(), frames, faults=Faults(unplugged={280: 30.0})) as device:
+        assert main(["nail", "run", str(model), "--port", str(device.path), "--seconds", "1.2", "-o", str(tmp_path / "o")]) == 0
+    said = capsys.readouterr()
+    assert said.out.count(f"nothing comes from {device.path}") == 1
+    found = json.loads((tmp_path / "o/result.json").read_text())
+    (gone,) = found["outages"]
+    assert not gone["back"] and "did not come back" in said.err and any("look at its cable" in note for note in found["notes"])
+
+
 def test_what_gathers_before_the_first_reading_is_passed_over_and_makes_nothing_late(
     model: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -129,7 +147,7 @@ def test_what_gathers_before_the_first_reading_is_passed_over_and_makes_nothing_
             seen.append(frame.host_time)
             return super().step(frame)
 
-    frames = list(itertools.islice(nail_frames(participant(np.random.default_rng(0)), [None], hold_s=0.4), 1120))
+    frames = list(itertools.islice(nail_frames(participant(np.random.default_rng([0, 1])), [None], hold_s=0.4), 1120))
     with pytest.MonkeyPatch.context() as patched, PtyServer(nail_stream(), frames) as device:
         patched.setattr(live, "NailWatch", Awaited)
         assert main(["nail", "run", str(model), "--port", str(device.path), "--seconds", "1", "-o", str(tmp_path / "o"), "--json"]) == 0
@@ -146,7 +164,7 @@ def test_a_machine_that_cannot_keep_up_is_told(model: Path, tmp_path: Path, caps
             time.sleep(0.002)  # where one frame comes every 0.7 ms
             return super().step(frame)
 
-    frames = list(itertools.islice(nail_frames(participant(np.random.default_rng(0)), [None], hold_s=0.4), 1680))
+    frames = list(itertools.islice(nail_frames(participant(np.random.default_rng([0, 1])), [None], hold_s=0.4), 1680))
     with pytest.MonkeyPatch.context() as patched, PtyServer(nail_stream(), frames) as device:
         patched.setattr(live, "NailWatch", Slow)
         assert main(["nail", "run", str(model), "--port", str(device.path), "--seconds", "2", "-o", str(tmp_path / "o"), "--json"]) == 0
