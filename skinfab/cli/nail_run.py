@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 #: Readings from one decision to the next: 5.7 ms, a turn of the motor.
 _EVERY = 8
+#: Readings that a decision is made on: 24 ms.
+_WINDOW = 33
 #: Decisions that come so much later than their readings, s, in the median, are ever more behind.
 _BEHIND_S = 0.2
 #: Where more of the windows are like nothing learned, nothing was decided.
@@ -32,7 +34,10 @@ def add_options(p: argparse.ArgumentParser) -> None:
     p.add_argument("log", metavar="LOG", type=Path, nargs="?", help="CSV, MCAP, ROS bag or recording of the channels Ax Ay Az Gx Gy Gz")
     p.add_argument("--port", metavar="PORT", help="such as /dev/ttyACM0, until Ctrl-C, instead of a log")
     p.add_argument(
-        "--window", metavar="N", type=steps.counting, default=33, help="readings a decision is made on, from 8 up (default: 33, 24 ms)"
+        "--window",
+        metavar="N",
+        type=steps.counting,
+        help="readings a decision is made on, from 8 up (default: 33, 24 ms; published: its own)",
     )
     p.add_argument(
         "--every", metavar="N", type=steps.counting, help="a decision after so many readings (default: 8; published: its window)"
@@ -57,6 +62,9 @@ def run(args: argparse.Namespace) -> int:
             args.wrong_usage(f"--{name} is for a {other}")
     require_apart(args.output, FILES, [path for path in (args.model, args.log, args.labels) if path is not None])
     content = load_nail(args.model)
+    if (own := getattr(content.model, "samples", None)) and args.window not in (None, own):
+        args.wrong_usage(f"the published method decides on the {own} readings that {args.model.name} learned from; leave --window out")
+    args.window = args.window or own or _WINDOW
     if args.every is None:
         args.every = getattr(content.model, "samples", _EVERY)
     names = list(content.model.names)
@@ -201,6 +209,10 @@ def _facts(args: argparse.Namespace, content: Any, told: Sequence[Told], facts: 
         )
     if facts["lost"]:
         notes.append(f"{facts['lost']} frames were lost on the way")
+    if content.made_from.get("simulated") and not facts["simulated"]:
+        notes.append(
+            f"{args.model.name} was learned from simulated readings: what it says of measured ones is marked as simulated, and worth little"
+        )
     drives = np.array([each.drive_hz for each in told if each.decision is not None and not each.decision.strange])
     known = drives[np.isfinite(drives)]
     return {

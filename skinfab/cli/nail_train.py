@@ -169,5 +169,7 @@ def _lines(result: dict[str, Any], held: dict[str, Held]) -> list[str]:
             if facts[key] is not None and math.isfinite(facts[key]):
                 line += f", off by {facts[key]:.1f} {unit} in the mean"
         lines.append(line)
+    if any("off by" in line for line in lines):
+        lines.append("  (off from what the table says was touched: where a finger was aimed at, not where it came to lie)")
     lines.append(f"wrote {result['file']}")
     return lines

@@ -50,6 +50,10 @@ def test_train(logs: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], m
     rate = held["whole trials"]["accuracy"]
     assert 0.4 < rate["value"] and rate["low"] < rate["value"] <= rate["high"]
     assert ("33 readings" in held) == (method == "improved")
+    if method == "published":  # its window is what it learned from
+        log = str(logs / "participant-1.csv")
+        assert main(["nail", "run", str(tmp_path / "m.npz"), log, "--window", "33", "-o", str(tmp_path / "o")]) == 2
+        assert "decides on the 256 readings that m.npz learned from; leave --window out" in capsys.readouterr().err
     assert (tmp_path / "m.npz").read_bytes()[:2] == b"PK" and [each.name for each in tmp_path.iterdir()] == ["m.npz"]
 
 
@@ -58,6 +62,7 @@ def test_train_says_it_in_words(logs: Path, tmp_path: Path, capsys: pytest.Captu
     said = capsys.readouterr()
     assert "improved (simulated): 80 trials of 1, 2" in said.out and "held out by participant" in said.out and "% right [" in said.out
     assert "forces from" in said.err and "too much alike" in said.err
+    assert "where a finger was aimed at, not where it came to lie" in said.out
 
 
 def test_run_on_a_log(logs: Path, model: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -84,6 +89,15 @@ def test_run_on_a_log(logs: Path, model: Path, tmp_path: Path, capsys: pytest.Ca
     assert len(rows) == found["windows"] and {each["missing"] for each in rows} == {"0"}
     touched = next(each for each in rows if each["contact"] == "1" and each["strange"] == "0")
     assert abs(float(touched["x_mm"])) < 10 and touched["angle_deg"] == "" and 0 < float(touched["confidence"]) <= 1
+
+
+def test_a_model_of_simulated_readings_says_so_of_measured_ones(
+    logs: Path, model: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    lines = (logs / "participant-1.csv").read_text().splitlines()
+    (tmp_path / "own.csv").write_text("\n".join(line.replace('"simulated": true', '"simulated": false') for line in lines) + "\n")
+    assert main(["nail", "run", str(model), str(tmp_path / "own.csv"), "--every", "64", "-o", str(tmp_path / "o")]) == 0
+    assert "m.npz was learned from simulated readings: what it says of measured ones is marked as simulated" in capsys.readouterr().err
 
 
 def test_run_says_it_in_words(logs: Path, model: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
