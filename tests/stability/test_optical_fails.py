@@ -68,12 +68,12 @@ def test_shear_that_was_not_learned_turns_the_edge_and_is_known_by_low_confidenc
     assert learned[:, 1].mean() < 12 and learned[:, 0].mean() < 0.9  # and where it was learned it costs little
 
 
-def test_following_with_drag_that_was_not_learned_palpates_a_lot_and_doubles_the_error(unsheared: EdgeModel, model: EdgeModel) -> None:
+def test_following_with_drag_that_was_not_learned_is_lost_or_palpates_a_lot(unsheared: EdgeModel, model: EdgeModel) -> None:
     def off(trace: Trace) -> float:
         return float(np.abs(CIRCLE.plate.distance(trace.edge)).mean())
 
     naive, learned = followed(unsheared.edge, drag=0.5), followed(model.edge, drag=0.5)
-    assert naive.recoveries > 20 and off(naive) > 1.5 * off(learned)
+    assert not naive.closed or (naive.recoveries > 20 and off(naive) > 1.5 * off(learned))
     assert learned.closed and learned.recoveries <= 3 and off(learned) < 0.8
 
 
