@@ -1,6 +1,7 @@
 """Lets every test import the shared shapes (`import shapes`), and what tests start be interrupted; pictures are made small."""
 
 import fcntl
+import gc
 import os
 import shutil
 import signal
@@ -51,3 +52,12 @@ def small_previews() -> Iterator[None]:
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """The longest tests first, so that no worker is left alone with them at the end."""
     items.sort(key=lambda item: item.path.name != "test_real_meshes.py")
+
+
+@pytest.fixture
+def tidied() -> Iterator[None]:
+    """The collector, which the control loop calls before it begins, passes over what thousands of tests left: it took a second."""
+    gc.collect()
+    gc.freeze()
+    yield
+    gc.unfreeze()

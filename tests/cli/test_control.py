@@ -110,6 +110,7 @@ def test_a_hole_in_the_log_stops_the_joint(calibrations: dict[str, str], tmp_pat
     assert run["held_or_stopped"] == pytest.approx(0.9 / 9.97, abs=0.003)  # the first tenth of that second the last frame is fresh enough
 
 
+@pytest.mark.usefixtures("tidied")
 def test_port(calibrations: dict[str, str], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Frames from one pseudo-terminal, commands to another, which drive the simulated joint."""
     board = FingerBoard(uniform(length_s=5.0), seed=0)
@@ -143,6 +144,7 @@ def test_port(calibrations: dict[str, str], tmp_path: Path, capsys: pytest.Captu
     assert abs(board.robot[220] - uniform().angle[220]) < 10 and 95 < result["rate_hz"] < 105
 
 
+@pytest.mark.usefixtures("tidied")
 def test_a_board_of_another_rate_is_taken_as_it_is(
     calibrations: dict[str, str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -246,6 +248,7 @@ class Lines:
         os.close(self._slave)
 
 
+@pytest.mark.usefixtures("tidied")
 def test_a_broken_wire_is_told_and_what_was_out_of_range_too(
     calibrations: dict[str, str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -283,6 +286,7 @@ def test_a_broken_wire_is_told_and_what_was_out_of_range_too(
     assert f"out of range {100 * result['outside']:.0f} %" in printed.out
 
 
+@pytest.mark.usefixtures("tidied")
 @pytest.mark.parametrize("gone", [True, False], ids=["gone", "deaf"])
 def test_a_hand_that_is_gone_or_deaf_costs_no_record(
     calibrations: dict[str, str], tmp_path: Path, capsys: pytest.CaptureFixture[str], gone: bool
