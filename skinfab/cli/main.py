@@ -200,6 +200,13 @@ def _on_its_way_out() -> bool:
     return fault is not None
 
 
+def _importing(frame: FrameType | None) -> bool:
+    """A module is being loaded: a compiled one may abort the whole process when an interrupt meets its first lines."""
+    while frame is not None and frame.f_code.co_filename != "<frozen importlib._bootstrap>":
+        frame = frame.f_back
+    return frame is not None
+
+
 @contextmanager
 def _termination_as_interrupt() -> Iterator[list[int]]:
     """Let SIGTERM and SIGHUP unwind like Ctrl-C, so that temporary files go, and see that each gets through."""
@@ -209,8 +216,8 @@ def _termination_as_interrupt() -> Iterator[list[int]]:
     def interrupt(signum: int, frame: FrameType | None) -> None:
         # An interrupt inside a library's callback can be swallowed there: it comes again until it gets through.
         seen.append(signum)
-        signal.setitimer(signal.ITIMER_REAL, AGAIN_S)
-        if not _on_its_way_out():
+        signal.setitimer(signal.ITIMER_REAL, AT_ONCE_S if _importing(frame) else AGAIN_S)
+        if not (_importing(frame) or _on_its_way_out()):
             raise KeyboardInterrupt
 
     def swallowed(unraisable: sys.UnraisableHookArgs) -> None:

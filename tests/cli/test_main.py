@@ -207,6 +207,15 @@ def test_an_interrupt_turned_into_another_error_is_one_all_the_same(fault: str) 
     assert (done.returncode, done.stderr) == (130, "skinfab: interrupted; nothing half-written was left\n")
 
 
+def test_an_interrupt_waits_until_a_module_is_loaded(tmp_path: Path) -> None:
+    """A compiled module may abort the process when it is met by an exception while it sets itself up."""
+    (tmp_path / "slow.py").write_text("import os, time\nos.kill(os.getpid(), 15)\ntime.sleep(0.1)\nprint('loaded', flush=True)\n")
+    body = (f"sys.path.insert(0, {str(tmp_path)!r})", "import slow", "time.sleep(5)", "print('not reached')")
+    done = run_body("\n    ".join(body))
+    assert (done.returncode, done.stdout) == (130, "loaded\n")
+    assert done.stderr == "skinfab: interrupted; nothing half-written was left\n"
+
+
 @pytest.mark.parametrize("way_out", ["finally", "except KeyboardInterrupt", "except BaseException"])
 def test_cleaning_up_is_not_cut_short_by_a_second_interrupt(way_out: str) -> None:
     """The first interrupt is repeated in case it was swallowed: not so while it is being handled, however long that takes."""
