@@ -19,6 +19,9 @@ from skinfab.errors import SkinfabError
 #: Progress is told at most this often, s: more than a screen shows is only traffic.
 TELL_EVERY_S = 0.03
 
+#: Modules that take long to import and that its work needs.
+NEEDS = ("shapely", "gcode.write", "skinfab.placement.auto", "skinfab.seams.auto")
+
 
 @dataclass(frozen=True)
 class Order:
@@ -133,5 +136,5 @@ def _interrupt(number: int, frame: FrameType | None) -> None:
 def _import_what_takes_long() -> None:
     """Before the first order, while the user still looks at the window; with less than its share of a core."""
     os.nice(5)
-    for name in ("shapely", "gcode.write", "skinfab.placement.auto", "skinfab.seams.auto"):
+    for name in NEEDS:
         importlib.import_module(name)

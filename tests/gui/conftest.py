@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import gc
+import multiprocessing
 import os
 import shutil
 import subprocess
 from collections.abc import Iterator
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from gui.jobs import runner, worker
 from gui.state.session import Session
 from skinfab.mesh.model import Mesh
 from skinfab.patterns.registry import make_pattern
@@ -91,7 +94,20 @@ def session(skin: Skin) -> Session:
 
 
 @pytest.fixture(scope="module")
-def one_window(display: str, tmp_path_factory: pytest.TempPathFactory) -> Iterator[object]:
+def quick_workers() -> Iterator[None]:
+    """Worker processes that branch off one that has imported all they need, instead of 1.3 s of imports for each window and its spare.
+
+    How a window really starts them is seen in tests/gui/jobs, tests/gui/e2e and tests/cli/test_gui.py.
+    """
+    context = multiprocessing.get_context("forkserver")
+    context.set_forkserver_preload(["gui.jobs.tasks", *worker.NEEDS])
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(runner, "multiprocessing", SimpleNamespace(get_context=lambda method: context))
+        yield
+
+
+@pytest.fixture(scope="module")
+def one_window(display: str, quick_workers: None, tmp_path_factory: pytest.TempPathFactory) -> Iterator[object]:
     """One real window for all tests of a file, with its worker process, and with someone who answers its questions."""
     import tkinter as tk
 

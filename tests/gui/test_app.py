@@ -19,7 +19,7 @@ from gui.theme import DARK, LIGHT
 
 
 @pytest.fixture
-def start(display, tmp_path, monkeypatch):
+def start(display, quick_workers, tmp_path, monkeypatch):
     """Opens windows that share one state folder, one after the other."""
     monkeypatch.setenv("SKINFAB_STATE", str(tmp_path / "state"))
     opened = []

@@ -78,6 +78,9 @@ class Window:
         return [p.text for p in self.session.problems if p.kind == kind]
 
 
+pytestmark = pytest.mark.usefixtures("quick_workers")
+
+
 @pytest.fixture
 def window(root, skin):
     made = Window(root, skin)
