@@ -33,7 +33,6 @@ BENCHES = {
 UNTAUGHT = {
     "contact": "the point follows from force and moment; set the friction angle with skinfab force run contact --friction DEG",
     "gravity": "the centre follows from the poses; use skinfab force run gravity LOG ...",
-    "liquid": "a still hand's noise is in the log itself; use skinfab force run liquid LOG ...",
 }
 
 Verbs = Mapping[str, "argparse._SubParsersAction[argparse.ArgumentParser]"]

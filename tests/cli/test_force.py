@@ -128,13 +128,29 @@ def test_liquids(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert len(rows) == 1 + len(made["files"]) and rows[0].startswith("log,answer,chance") and rows[1].split(",")[1] == "solid or empty"
 
 
+def test_a_limit_is_learned_from_empty_cups_and_used(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    made = said(capsys, "simulate", "liquid", "-o", tmp_path / "logs", "--trials", "3", "--seconds", "12")["files"]
+    empty = [name for name in made if "-0-g-" in name]
+    learned = said(capsys, "train", "liquid", *empty, "-o", tmp_path / "learned", "--false-alarm", "0.1", "--seconds", "3")
+    assert learned["simulated"] and learned["pieces"] == 24 and learned["logs"] == 6 and 0 < learned["limit"] < 0.5
+    assert set(learned["held_out_false_alarm"]) == {"value", "low", "high"} and len(learned["made_from"]) == 6
+    result = said(capsys, "run", "liquid", *made, "--model", tmp_path / "learned" / "model.npz", "-o", tmp_path / "out")
+    assert result["learned"] and result["limit"] == learned["limit"] and result["false_alarm"] == 0.1
+    assert all(cup["liquid"] for cup in result["cups"] if cup["label"] == "liquid")
+    assert main(["force", "run", "liquid", made[0], "--model", made[0], "-o", str(tmp_path / "no")]) == 1
+    assert "is not a whole model" in capsys.readouterr().err
+    assert main(["force", "train", "liquid", *map(str, made), "-o", str(tmp_path / "no")]) == 1
+    assert "says that it holds a liquid" in capsys.readouterr().err and not (tmp_path / "no").exists()
+
+
 @pytest.mark.parametrize(
     ("arguments", "status", "says"),
     [
         (["run"], 2, "TOPIC"),
         (["train", "gravity", "a.csv", "-o", "x"], 2, "nothing is to be learned: the centre follows from the poses"),
         (["train", "contact"], 2, "skinfab force run contact --friction DEG"),
-        (["train", "liquid", "a.csv"], 2, "use skinfab force run liquid LOG"),
+        (["train", "liquid", "a.csv", "-o", "x", "--false-alarm", "1"], 2, "1 is not below 1"),
+        (["train", "liquid", "a.csv", "-o", "x", "--seconds", "2"], 2, "shorter than the 3 s"),
         (["run", "texture", "a.csv", "-o", "x"], 2, "--model"),
         (["run", "gravity", "nothing.csv", "-o", "x"], 1, "nothing.csv"),
         (["run", "gravity", "a.csv", "--max-sd", "-1", "-o", "x"], 2, "not a positive number"),

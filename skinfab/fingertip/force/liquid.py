@@ -30,6 +30,8 @@ BAND_HZ = (1.5, 6.0)
 PIECE_S = 6.0
 #: Shorter ones have too few frequencies to compare with.
 LEAST_S = 3.0
+#: Times are written with so many digits that a log is no longer or shorter than it says by this part of a sample.
+PART_OF_A_SAMPLE = 0.01
 #: Neighbours to compare with: so far, Hz, and at least so many on both sides together; nearer ones see the swing itself.
 _REACH_HZ, _NEIGHBOURS, _GAP_HZ = 3.5, 24, 0.25
 #: So many ordinates lose power with the straight line, and tell less than the noise.
@@ -108,7 +110,7 @@ def stirred(log: WrenchLog, *, false_alarm: float = FALSE_ALARM) -> Stirred:
     (False, True)
     """
     lasts = len(log) / log.rate_hz if len(log) > 1 else 0.0
-    if not lasts >= LEAST_S:
+    if not len(log) > LEAST_S * log.rate_hz - PART_OF_A_SAMPLE:
         raise InputError(f"{log.name} lasts for {lasts:.2g} s; hold still for {LEAST_S:g} s or more")
     if not log.rate_hz >= _LEAST_RATE_HZ:
         raise InputError(f"{log.name} has {log.rate_hz:.3g} samples a second; a liquid swings faster: record {_LEAST_RATE_HZ:g} or more")

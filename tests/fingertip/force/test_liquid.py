@@ -8,7 +8,7 @@ from scipy.signal import butter, lfilter
 
 from skinfab.errors import InputError
 from skinfab.fingertip.force.liquid import FALSE_ALARM, stirred
-from skinfab.fingertip.force.liquid_simulator import WAYS, stir
+from skinfab.fingertip.force.liquid_simulator import WAYS, CupScene, stir
 from skinfab.fingertip.force.logs import WrenchLog
 from skinfab.fingertip.force.motion_simulator import grasp_log
 from skinfab.rates import wilson
@@ -50,7 +50,7 @@ def test_the_lines_of_swinging_water_meet_about_its_pivot() -> None:
 
 
 def test_a_drifting_sensor_holds_no_liquid() -> None:
-    drifting = [stir(water_kg=0.0, drift_nmm_s=5.0, seed=k) for k in range(10)]
+    drifting = [stir(water_kg=0.0, scene=CupScene(drift_nmm_s=5.0), seed=k) for k in range(10)]
     # Left in, the drift alone would be many times the noise of a block's mean.
     means = drifting[0].moment[:1200].reshape(-1, 10, 3).mean(axis=1)
     assert means.std() > 5 * 1.7 / np.sqrt(10)
