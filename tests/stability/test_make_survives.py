@@ -1,6 +1,7 @@
 """The main job on broken files, interrupted, and on a full disk: one answer, nothing half-written."""
 
 import os
+import re
 import resource
 import runpy
 import signal
@@ -13,6 +14,8 @@ import pytest
 import results
 
 from skinfab.cli.main import main
+from skinfab.errors import InputError
+from skinfab.mesh.door import load_usable
 
 ROOT = Path(__file__).parents[2]
 SKINFAB = Path(sys.executable).with_name("skinfab")
@@ -24,9 +27,28 @@ def left_in(folder: Path) -> list[str]:
     return sorted(str(p.relative_to(folder)) for p in folder.rglob("*")) if folder.exists() else []
 
 
+@pytest.fixture(scope="module")
+def made() -> dict[bytes, str]:
+    """The meshes that were made into skins, and of which file: a third of the files are the same mesh once they are cleaned."""
+    return {}
+
+
+def mesh_of(path: Path) -> bytes | None:
+    """What is left of a file at the door, bit for bit; None where it is refused there."""
+    try:
+        mesh = load_usable(path).mesh
+    except InputError:
+        return None
+    return mesh.V.tobytes() + mesh.F.tobytes()
+
+
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.file)
-def test_broken_meshes(case, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+def test_broken_meshes(case, made: dict[bytes, str], tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     (tmp_path / case.file).write_bytes(case.data)
+    mesh = mesh_of(tmp_path / case.file)
+    if mesh is not None and made.setdefault(mesh, case.file) != case.file:
+        assert case.fate in ("as is", "cleaned")
+        return
     # Time of this process, not of the wall: other tests run beside it.
     began = time.process_time()
     status = main(["make", str(tmp_path / case.file), "-o", str(tmp_path / "out")])
@@ -48,22 +70,37 @@ def test_broken_meshes(case, tmp_path: Path, capfd: pytest.CaptureFixture[str]) 
         assert status == 1
 
 
-@pytest.mark.parametrize("after_s", [0.2, 1.0, 2.0, 3.0, 4.0])
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def catches(pid: int, number: int) -> bool:
+    """Whether a process has a handler for a signal."""
+    caught = re.search(r"^SigCgt:\s*(\w+)", Path(f"/proc/{pid}/status").read_text(), re.M)
+    return caught is not None and bool(int(caught[1], 16) >> (number - 1) & 1)
+
+
+def worked_s(pid: int) -> float:
+    """Processor time that a process has had, s: where it is in its work, however busy the machine."""
+    user, system = Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()[11:13]
+    return (int(user) + int(system)) / os.sysconf("SC_CLK_TCK")
+
+
+# What comes before the command is Python's: that it has a handler for SIGTERM is the command's first own doing.
+@pytest.mark.parametrize(
+    ("after_s", "number"),
+    [(0.0, signal.SIGINT), (0.0, signal.SIGTERM), (0.5, signal.SIGTERM), (1.0, signal.SIGINT), (2.0, signal.SIGTERM), (3.0, signal.SIGINT)],
+)
 def test_interrupted(after_s: float, number: int, tmp_path: Path) -> None:
     out = tmp_path / "out"
     job = subprocess.Popen(
         [SKINFAB, "make", ROOT / "meshes/cup.obj", "-o", out], stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True
     )
-    time.sleep(after_s)
+    while job.poll() is None and not (catches(job.pid, signal.SIGTERM) and worked_s(job.pid) >= after_s):
+        time.sleep(0.002)
     job.send_signal(number)
     _, error = job.communicate(timeout=30)
     if job.returncode == 0:
         # It was through already: then everything is there.
         results.read_report(out)
         return
-    # Before Python has set its handlers the system ends the process itself.
-    assert job.returncode in (130, -number), error
+    assert job.returncode == 130, error
     assert "Traceback" not in error
     assert left_in(out) == []
 
