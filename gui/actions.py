@@ -13,6 +13,9 @@ from gui.flow import Flow
 #: Words of a key as Tk writes them, and as people read them.
 _KEY_WORDS = (("Control-", "Ctrl+"), ("Shift-", "Shift+"), ("Alt-", "Alt+"), ("Key-", ""), ("Return", "Enter"), ("space", "Space"))
 
+#: Bits of an event's state that say Alt is held: the X server's own, and Tk's.
+_ALT = 0x8 | 0x20000
+
 #: Classes of widgets that do something of their own when Space is pressed.
 _PRESSED_BY_SPACE = ("TButton", "TCheckbutton", "TRadiobutton", "Treeview", "Button", "Checkbutton", "Radiobutton", "Listbox")
 
@@ -129,6 +132,7 @@ class Actions:
     def menu_bar(self, submenus: Mapping[str, Callable[[tk.Menu], None]]) -> tk.Menu:
         """A menu bar; `submenus` ("File/Open recent") are filled by their callables whenever they are opened."""
         bar = tk.Menu(self._root, tearoff=False, name="menu")
+        letters: set[str] = set()
         for name in dict.fromkeys(a.menu for a in self.all if a.menu):
             menu = tk.Menu(bar, tearoff=False, name=name.lower())
             entries = []
@@ -142,7 +146,10 @@ class Actions:
                 entries.append((menu.index("end") or 0, action))
                 self._insert_submenu(menu, f"{name}/{action.id}", submenus)
             menu.configure(postcommand=self.refresh)
-            bar.add_cascade(label=name, menu=menu, underline=0)
+            # Seams and Sensors, Edit and Export: a letter opens one menu only.
+            underlined = next((k for k, letter in enumerate(name.lower()) if letter not in letters), 0)
+            letters.add(name[underlined].lower())
+            bar.add_cascade(label=name, menu=menu, underline=underlined)
             self._menus.append((menu, entries))
         return bar
 
@@ -203,6 +210,9 @@ class Actions:
         def pressed(event: tk.Event) -> str | None:
             # A letter typed into a field is meant for the field.
             if isinstance(event.widget, (tk.Entry, ttk.Entry, tk.Text)) and not action.key.startswith(("Control-", "F", "Alt-")):
+                return None
+            # Alt and a letter open a menu.
+            if int(event.state) & _ALT and "Alt-" not in action.key:
                 return None
             # Space presses the button that has the focus, and nothing else.
             if action.key == "Key-space" and event.widget.winfo_class() in _PRESSED_BY_SPACE:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from skinfab.errors import InputError
 from skinfab.mesh.model import Mesh
 from skinfab.pieces import Piece
+from skinfab.placement.lifted import Lifted
 from skinfab.placement.sensor import Sensor
 
 
@@ -98,6 +99,8 @@ class Skin:
         The object's own vertices, where `mesh` has others.
     marks : SeamMarks, optional
         Where seams may run; None where nothing was decided.
+    lifted : tuple of Lifted
+        Sensors that a cut took off; they are part of nothing that is made until they are back.
     """
 
     mesh: Mesh
@@ -113,6 +116,7 @@ class Skin:
     neutral: float = 0.5
     object_V: NDArray[np.float64] | None = None
     marks: SeamMarks | None = None
+    lifted: tuple[Lifted, ...] = ()
 
     @cached_property
     def object(self) -> Mesh:

@@ -26,7 +26,8 @@ FLOORS = (
     ("pieces", "flatten", "fingertip"),
     ("seams", "placement", "skin"),  # edits of seams and sensors take a skin and give one
     (
-        *("document", "mould", "mould_plan", "mould_taper", "strip_plate", "wiring", "wired", "wire_exits", "wire_ways", "wire_choice"),
+        *("document", "document_parts"),
+        *("mould", "mould_plan", "mould_taper", "strip_plate", "wiring", "wired", "wire_exits", "wire_ways", "wire_choice"),
         *("recipe", "work_order", "drawings", "report"),
     ),
     ("cli", "bench", "__main__"),

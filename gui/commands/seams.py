@@ -72,7 +72,6 @@ class SeamCommands:
             source="flatten",
             wanted=lambda: self._fits(asked, over_sensors=True),
             skin=asked,
-            lifted=self._desk.session.lifted,
         )
 
     def flatten_anew(self) -> None:
@@ -86,7 +85,6 @@ class SeamCommands:
             source="flatten",
             wanted=lambda: self._fits(asked),
             skin=asked,
-            lifted=self._desk.session.lifted,
             method=self.method,
             cones=self._cones(),
             anew=ids,
@@ -111,7 +109,7 @@ class SeamCommands:
         def take(result: Reopened) -> None:
             self._behind = False
             self._settle(result.skin, result)
-            self._desk.session.do(f"skin {thickness:g} mm thick", result.skin, lifted=result.lifted)
+            self._desk.session.do(f"skin {thickness:g} mm thick", result.skin)
             self._tell_of_sensors(asked, result)
 
         self._desk.work(
@@ -121,7 +119,6 @@ class SeamCommands:
             source="flatten",
             wanted=lambda: self._fits(asked),
             skin=asked,
-            lifted=self._desk.session.lifted,
             thickness=thickness,
             method=self.method,
         )
@@ -188,7 +185,6 @@ class SeamCommands:
                 return
         asked: dict[str, Any] = {
             "skin": skin,
-            "lifted": self._desk.session.lifted,
             "method": self.method,
             "cones": self._cones(),
             "anew": [],
@@ -218,9 +214,9 @@ class SeamCommands:
                 return
             self._settle(skin, result)
             if label:
-                session.do(label, skin, lifted=result.lifted)
-            elif skin.pieces != asked.pieces or skin.seams is not asked.seams or result.back:
-                session.amend(skin, lifted=result.lifted)
+                session.do(label, skin)
+            elif skin.pieces != asked.pieces or skin.seams is not asked.seams or skin.lifted is not asked.lifted:
+                session.amend(skin)
             self._tell_of_sensors(asked, result)
 
         return take
@@ -240,7 +236,7 @@ class SeamCommands:
             self._took_off = self._desk.session.step
             self._list_lifted()
             lost = {sensor.id for sensor in result.lost}
-            said = [p.text + "." for p in taken_off([e for e in result.lifted if e.sensor.id in lost], by_last_step=True)]
+            said = [p.text + "." for p in taken_off([e for e in result.skin.lifted if e.sensor.id in lost], by_last_step=True)]
         back: dict[str, list[str]] = {}
         for sensor in result.back:
             back.setdefault(sensor.piece, []).append(sensor.id)

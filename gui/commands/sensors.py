@@ -52,7 +52,7 @@ class SensorCommands:
             session = self._desk.session
             sensors = adopt(asked, skin).sensors
             self._said = sensors, warnings
-            session.do(label, replace(self._desk.skin, sensors=sensors), lifted=())
+            session.do(label, replace(self._desk.skin, sensors=sensors, lifted=()))
 
         def wanted() -> bool:
             """On the same pieces, whatever else was done to the skin; but what was undone can be redone."""
@@ -75,4 +75,4 @@ class SensorCommands:
     def clear(self) -> None:
         """Take all off."""
         self._desk.session.select(NOTHING)
-        self._desk.session.do("remove all sensors", replace(self._desk.skin, sensors=()), lifted=())
+        self._desk.session.do("remove all sensors", replace(self._desk.skin, sensors=(), lifted=()))

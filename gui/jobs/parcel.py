@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 
-from skinfab.placement.carry import Lifted
 from skinfab.skin import Skin
 
 
@@ -31,8 +30,7 @@ def shared(arguments: dict[str, Any]) -> list[object]:
     for skin in (value for value in arguments.values() if isinstance(value, Skin)):
         found += [skin, skin.mesh, skin.source, skin.seams, *skin.pieces, *skin.sensors]
         found += [part for part in (skin.object_V, skin.marks) if part is not None]
-    for each in (each for value in arguments.values() if isinstance(value, tuple) for each in value if isinstance(each, Lifted)):
-        found += [each.sensor, each.piece]
+        found += [part for each in skin.lifted for part in (each, each.sensor, each.piece)]
     return found
 
 

@@ -20,7 +20,6 @@ from skinfab.mesh.surface import surface
 from skinfab.mesh.units import guess_units
 from skinfab.mesh.wrap import WRAP_OFFSET, wrap
 from skinfab.placement import beside
-from skinfab.placement.carry import Lifted
 from skinfab.placement.edit import Sensors
 from skinfab.placement.place import place_sensors
 from skinfab.progress import Progress, part_of
@@ -124,15 +123,13 @@ def open_skin(*, path: Path, progress: Progress) -> Opened:
     return Opened(load_skin(path), ())
 
 
-def auto_cut(*, skin: Skin, lifted: Sequence[Lifted] = (), progress: Progress) -> Reopened:
+def auto_cut(*, skin: Skin, progress: Progress) -> Reopened:
     """Automatic seams; locked ones stay."""
     material = load_material(skin.material)
-    return partial.auto_cut(skin, limits_of(skin), neck=material.neck, material=material, lifted=lifted, progress=progress)
+    return partial.auto_cut(skin, limits_of(skin), neck=material.neck, material=material, progress=progress)
 
 
-def reopen(
-    *, skin: Skin, method: str, cones: int | None, anew: Collection[str], lifted: Sequence[Lifted] = (), progress: Progress
-) -> Reopened:
+def reopen(*, skin: Skin, method: str, cones: int | None, anew: Collection[str], progress: Progress) -> Reopened:
     """The pieces that the seams give as they are."""
     return partial.reopen(
         skin,
@@ -141,7 +138,6 @@ def reopen(
         cones=cones,
         anew=anew,
         material=load_material(skin.material),
-        lifted=lifted,
         progress=progress,
     )
 
@@ -162,7 +158,7 @@ def copy_beside(*, skin: Skin, ids: Sequence[str], progress: Progress) -> tuple[
     return beside.copy_beside(skin, ids, material=with_room_for_nozzle(used.material, used.printer)[0])
 
 
-def make_thick(*, skin: Skin, thickness: float, method: str, lifted: Sequence[Lifted] = (), progress: Progress) -> Reopened:
+def make_thick(*, skin: Skin, thickness: float, method: str, progress: Progress) -> Reopened:
     """The same seams for a skin of another thickness: the surface on which it keeps its lengths lies elsewhere."""
     progress(0.1, "moving the surface")
     material = load_material(skin.material)
@@ -172,8 +168,6 @@ def make_thick(*, skin: Skin, thickness: float, method: str, lifted: Sequence[Li
         skin, mesh=flattened.mesh, thickness=flattened.thickness, object_V=None if flattened.mesh is skin.object else skin.object.V
     )
     ids = [piece.id for piece in skin.pieces]
-    made = partial.reopen(
-        moved, limits_of(skin), method=method, anew=ids, material=material, lifted=lifted, progress=part_of(progress, 0.3, 1.0)
-    )
+    made = partial.reopen(moved, limits_of(skin), method=method, anew=ids, material=material, progress=part_of(progress, 0.3, 1.0))
     remarks = tuple(Fault(remark, np.arange(len(moved.mesh.F))) for remark in flattened.remarks)
     return replace(made, faults=remarks + made.faults)

@@ -8,6 +8,7 @@ import numpy as np
 
 from skinfab.mesh.model import Mesh
 from skinfab.pieces import Piece
+from skinfab.placement.lifted import Lifted
 from skinfab.skin import Skin
 
 
@@ -36,6 +37,7 @@ def adopt(before: Skin, after: Skin) -> Skin:
         sensors=tuple(sensors[s.id] if sensors.get(s.id) == s else s for s in after.sensors),
         seams=before.seams if np.array_equal(before.seams, after.seams) else after.seams,
         marks=before.marks if _same_marks(before, after) else after.marks,
+        lifted=before.lifted if _same_lifted(before.lifted, after.lifted) else after.lifted,
     )
     return adopted
 
@@ -46,6 +48,13 @@ def _same_mesh(a: Mesh, b: Mesh) -> bool:
 
 def _same_piece(a: Piece, b: Piece) -> bool:
     return a is b or all(np.array_equal(getattr(a, name), getattr(b, name)) for name in ("faces", "vertices", "F", "UV"))
+
+
+def _same_lifted(before: tuple[Lifted, ...], after: tuple[Lifted, ...]) -> bool:
+    return len(before) == len(after) and all(
+        (a.sensor, a.why, a.place) == (b.sensor, b.why, b.place) and _same_piece(a.piece, b.piece)
+        for a, b in zip(before, after, strict=True)
+    )
 
 
 def _same_marks(a: Skin, b: Skin) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from gui.state.problem import Problem
-from skinfab.placement.carry import Lifted
+from skinfab.placement.lifted import Lifted
 
 
 def taken_off(lifted: Sequence[Lifted], *, by_last_step: bool) -> list[Problem]:

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
 from gui.state.history import History
 from gui.state.problem import Problem
 from gui.state.selection import NOTHING, Target
-from skinfab.placement.carry import Lifted
+from skinfab.placement.lifted import Lifted
 from skinfab.skin import Skin
 
 #: What a listener can be told of.
@@ -18,14 +17,6 @@ Topic = Literal["skin", "file", "selection", "hover", "problems", "shading", "th
 
 #: How faces are coloured: by piece, by distortion d, as a checker board, or by painted seam preferences.
 SHADINGS = ("pieces", "distortion", "checker", "preferences")
-
-
-@dataclass(frozen=True, eq=False)
-class _State:
-    """What undo and redo go back and forth between."""
-
-    skin: Skin | None
-    lifted: tuple[Lifted, ...] = ()
 
 
 class Session:
@@ -46,7 +37,7 @@ class Session:
     """
 
     def __init__(self) -> None:
-        self._history: History[_State] = History(_State(None))
+        self._history: History[Skin | None] = History(None)
         self._saved: Skin | None = None
         self._listeners: dict[str, list[Callable[[], None]]] = {}
         self.path: Path | None = None
@@ -61,12 +52,12 @@ class Session:
     @property
     def skin(self) -> Skin | None:
         """The document as it is now; None before anything is opened."""
-        return self._history.now.skin
+        return self._history.now
 
     @property
     def lifted(self) -> tuple[Lifted, ...]:
-        """Sensors that lost their spot to a cut and come back once it lies flat again; not part of what is saved."""
-        return self._history.now.lifted
+        """Sensors that lost their spot to a cut and come back once it lies flat again."""
+        return () if self.skin is None else self.skin.lifted
 
     @property
     def step(self) -> int:
@@ -80,7 +71,7 @@ class Session:
 
     def open(self, skin: Skin, path: Path | None, *, saved: bool = True) -> None:
         """Begin anew with `skin`; `saved` says whether it is what lies at `path`."""
-        self._history = History(_State(skin))
+        self._history = History(skin)
         self._saved = skin if saved else None
         self.path = path
         self.selected = self.hovered = NOTHING
@@ -88,16 +79,16 @@ class Session:
         for topic in ("file", "skin", "selection", "hover", "problems"):
             self._tell(topic)
 
-    def do(self, label: str, skin: Skin, *, merge: object = None, lifted: tuple[Lifted, ...] | None = None) -> None:
-        """Change the document; `label` ("move C1") is what undo says, `merge` joins the steps of one drag, `lifted` None leaves those."""
-        self._history.do(label, _State(skin, self.lifted if lifted is None else lifted), merge=merge)
+    def do(self, label: str, skin: Skin, *, merge: object = None) -> None:
+        """Change the document; `label` ("move C1") is what undo says, `merge` joins the steps of one drag."""
+        self._history.do(label, skin, merge=merge)
         self._forget_missing()
         self._tell("skin")
 
-    def amend(self, skin: Skin, *, lifted: tuple[Lifted, ...] | None = None) -> None:
+    def amend(self, skin: Skin) -> None:
         """Complete the document by what follows from its last step, such as the flat pieces of a cut: undone with that step."""
         saved = not self.dirty
-        self._history.amend(_State(skin, self.lifted if lifted is None else lifted))
+        self._history.amend(skin)
         if saved:
             self._saved = skin
         self._forget_missing()

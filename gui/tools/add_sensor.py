@@ -38,7 +38,7 @@ class AddSensor(Tool):
         skin = self._desk.skin
         piece = skin.piece(hit.target.piece)
         (uv,) = self._desk.derived.flat_map(skin.mesh, piece).to_flat([hit.face], [hit.barycentric])
-        sensors, new = add_at(skin.sensors, self._pattern(), piece.id, uv)
+        sensors, new = add_at(skin.sensors, self._pattern(), piece.id, uv, reserved=[each.sensor for each in skin.lifted])
         self._desk.session.report("add", [])
         self._desk.session.do(f"add {new.id}", dataclasses.replace(skin, sensors=sensors))
         self._desk.session.select(Target(piece=piece.id, sensor=new.id))

@@ -8,6 +8,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from skinfab.cli import steps
 from skinfab.cli.left_over import left_over, say_left_over
 from skinfab.errors import InputError, RefusedError
 
@@ -63,6 +64,7 @@ def _write(args: argparse.Namespace) -> int:
     from gcode.printer import load_printer
     from gcode.write import write_previews, write_skin
     from skinfab.document import load_skin
+    from skinfab.placement.lifted import off_words
 
     skin = load_skin(args.words[0])
     printer = load_printer(args.printer) if args.printer else None
@@ -74,6 +76,7 @@ def _write(args: argparse.Namespace) -> int:
         print(json.dumps({"gcode": described, "previews": [str(f) for f in previews], "left_over": [str(f) for f in others]}))
         return 0
     say_left_over(Path(args.output), others)
+    steps.say(off_words(skin.lifted), kind="warning")
     for w in written:
         s = w.summary
         x, y = w.plan.offset

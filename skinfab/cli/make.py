@@ -87,7 +87,9 @@ def _make(args: argparse.Namespace, folder: Path, watch: Stopwatch, progress: Pr
         if args.sensors is not None or not skin.sensors:
             roomy, wider = with_room_for_nozzle(used.material, used.printer)
             sensors, warnings = place_sensors(skin, roomy, args.sensors)
-            skin, warnings = replace(skin, sensors=sensors), [*wider, *warnings]
+            off = steps.counted(len(skin.lifted), "sensor")
+            given_up = [f"all sensors are placed anew, also the {off} that were off"] if skin.lifted else []
+            skin, warnings = replace(skin, sensors=sensors, lifted=()), [*wider, *warnings, *given_up]
         else:
             warnings = bare_pieces(skin, with_room_for_nozzle(used.material, used.printer)[0])
     rest = part_of(progress, 0.75, 1.0)

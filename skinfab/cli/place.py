@@ -111,6 +111,7 @@ def run(args: argparse.Namespace) -> int:
     from gcode.used import with_room_for_nozzle
     from skinfab.document import load_skin, save_skin
     from skinfab.material import load_material
+    from skinfab.placement.lifted import off_words
     from skinfab.placement.place import place_sensors
 
     changes = bool(args.edits or args.add)
@@ -128,13 +129,16 @@ def run(args: argparse.Namespace) -> int:
     material = load_material(skin.material)
     target = args.output or args.skin
     warnings: list[str] = []
-    if skin.sensors and not (args.list or changes):
-        steps.say([f"the {steps.counted(len(skin.sensors), 'sensor')} that {args.skin} had are placed anew; --list would only show them"])
+    had = len(skin.sensors) + len(skin.lifted)
+    if had and not (args.list or changes):
+        steps.say([f"the {steps.counted(had, 'sensor')} that {args.skin} had are placed anew; --list would only show them"])
     if not args.list:
         roomy, wider = with_room_for_nozzle(material, load_printer(skin.printer))
         sensors, warnings = _changed(skin, roomy, args) if changes else place_sensors(skin, roomy, args.sensors)
-        skin, warnings = replace(skin, sensors=sensors), [*wider, *warnings, *_beyond_the_boards(sensors)]
+        skin = replace(skin, sensors=sensors, lifted=skin.lifted if changes else ())
+        warnings = [*wider, *warnings, *_beyond_the_boards(sensors)]
         save_skin(skin, target)
+    warnings = [*warnings, *off_words(skin.lifted)]
     steps.say(warnings, kind="warning")
     if args.json:
         print(json.dumps({"skin": str(target), "sensors": [_facts(s) for s in skin.sensors], "warnings": list(warnings)}))

@@ -24,7 +24,13 @@ def free_channel(sensors: Sequence[Sensor]) -> int:
 
 
 def add_at(
-    sensors: Sequence[Sensor], pattern: Pattern, piece: str, middle: ArrayLike, *, angle: float = 0.0
+    sensors: Sequence[Sensor],
+    pattern: Pattern,
+    piece: str,
+    middle: ArrayLike,
+    *,
+    angle: float = 0.0,
+    reserved: Sequence[Sensor] = (),
 ) -> tuple[tuple[Sensor, ...], Sensor]:
     """Put a pattern on a piece with its middle at a point; whether it fits is for `check` to say.
 
@@ -38,6 +44,8 @@ def add_at(
     middle : (2,) float, mm
         In the piece frame.
     angle : float, rad
+    reserved : sequence of Sensor
+        Others that lie nowhere for now, whose ids and channels stay theirs.
 
     Returns
     -------
@@ -54,5 +62,6 @@ def add_at(
     """
     c, s = np.cos(angle), np.sin(angle)
     x, y = np.asarray(middle, dtype=np.float64) - np.array([[c, -s], [s, c]]) @ pattern.middle
-    new = Sensor(free_id(sensors, pattern), piece, pattern, float(x), float(y), float(angle), free_channel(sensors))
+    taken = [*sensors, *reserved]
+    new = Sensor(free_id(taken, pattern), piece, pattern, float(x), float(y), float(angle), free_channel(taken))
     return tuple(sorted([*sensors, new], key=lambda s: s.channel)), new

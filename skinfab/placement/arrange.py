@@ -26,8 +26,12 @@ SIDES: tuple[Side, ...] = ("left", "right", "top", "bottom", "middle-x", "middle
 Axis = Literal["x", "y"]
 
 
-def copy(sensors: Sequence[Sensor], ids: Sequence[str], *, dx: float = 0.0, dy: float = 0.0) -> tuple[Sensors, tuple[str, ...]]:
+def copy(
+    sensors: Sequence[Sensor], ids: Sequence[str], *, dx: float = 0.0, dy: float = 0.0, reserved: Sequence[Sensor] = ()
+) -> tuple[Sensors, tuple[str, ...]]:
     """Add a copy of each of some sensors, (dx, dy) mm from it, with the next free id of its letter and the next free channel.
+
+    Ids and channels of those that are `reserved` stay free: they lie nowhere for now.
 
     Returns
     -------
@@ -46,8 +50,9 @@ def copy(sensors: Sequence[Sensor], ids: Sequence[str], *, dx: float = 0.0, dy: 
     result, new = list(sensors), []
     for id in ids:
         sensor = find(sensors, id)
+        taken = [*result, *reserved]
         added = dataclasses.replace(
-            sensor, id=_free_id(id, result), x=sensor.x + dx, y=sensor.y + dy, channel=_free_channel([s.channel for s in result])
+            sensor, id=_free_id(id, taken), x=sensor.x + dx, y=sensor.y + dy, channel=_free_channel([s.channel for s in taken])
         )
         result.append(added)
         new.append(added.id)

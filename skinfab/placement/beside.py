@@ -56,7 +56,7 @@ def copy_beside(skin: Skin, ids: Sequence[str], *, material: Material) -> tuple[
         There is no room for the copies on their piece.
     """
     chosen = [find(skin.sensors, id) for id in ids]
-    sensors, new = arrange.copy(skin.sensors, ids)
+    sensors, new = arrange.copy(skin.sensors, ids, reserved=[each.sensor for each in skin.lifted])
     placed: dict[str, Sensor] = {}
     for piece in dict.fromkeys(s.piece for s in chosen):
         group = [(s, id) for s, id in zip(chosen, new, strict=True) if s.piece == piece]

@@ -15,6 +15,7 @@ from skinfab.mesh.model import Mesh
 from skinfab.pieces import Piece
 from skinfab.placement.check import check_sensor, find_faults
 from skinfab.placement.edit import middle_of
+from skinfab.placement.lifted import Lifted, in_line
 from skinfab.placement.sensor import Sensor
 
 FloatArray = NDArray[np.float64]
@@ -42,25 +43,6 @@ class Carried:
     remarks: tuple[str, ...]
 
 
-@dataclass(frozen=True, eq=False)
-class Lifted:
-    """A sensor that lies nowhere for now, and the spot on the object that it is to come back to.
-
-    Parameters
-    ----------
-    sensor : Sensor
-        As it was last.
-    piece : Piece
-        The flat piece that it lay on, as that was: the two together say where on the object.
-    why : str
-        What keeps it off though its spot lies flat: "overlaps C9"; "" where its spot does not.
-    """
-
-    sensor: Sensor
-    piece: Piece
-    why: str = ""
-
-
 @dataclass(frozen=True)
 class PutBack:
     """What became of lifted sensors.
@@ -68,7 +50,7 @@ class PutBack:
     Parameters
     ----------
     sensors : tuple of Sensor
-        Those that lay there, and behind them those that came back.
+        Those that lay there and those that came back, in the order of the list.
     back : tuple of Sensor
         Those that came back.
     still : tuple of Lifted
@@ -90,6 +72,7 @@ def put_back(
     mesh : Mesh
         The surface that is flattened.
     lifted : sequence of Lifted
+        The first in the list is the first to be put back, should two be in each other's way.
     sensors : sequence of Sensor
         Those that lie on the pieces.
     after : sequence of Piece
@@ -98,8 +81,10 @@ def put_back(
     """
     moves = _Moves(mesh, after)
     pieces = {piece.id: piece for piece in after}
-    there, back, still = list(sensors), list[Sensor](), list[Lifted]()
-    for each in lifted:
+    line = in_line(sensors, lifted)
+    there, still = list(sensors), list[Lifted]()
+    back: dict[int, Sensor] = {}
+    for each in [one for one in line if isinstance(one, Lifted)]:
         new = moves.of(each.sensor, each.piece)
         if new is None:
             still.append(dataclasses.replace(each, why=""))
@@ -111,8 +96,9 @@ def put_back(
             still.append(dataclasses.replace(each, why=why))
         else:
             there.append(new)
-            back.append(new)
-    return PutBack(tuple(there), tuple(back), tuple(still))
+            back[id(each)] = new
+    listed = [back.get(id(one)) if isinstance(one, Lifted) else one for one in line]
+    return PutBack(tuple(one for one in listed if one is not None), tuple(back.values()), tuple(still))
 
 
 def _taken(sensor: Sensor, there: Sequence[Sensor]) -> str:
@@ -161,7 +147,7 @@ def carry(
             carried.append(new)
             moved.append(new)
     remarks = [
-        f"{s.id} was taken off: its spot on the object is on no flat piece any more; cut so that it is, and place it again" for s in lost
+        f"{s.id} was taken off: its spot on the object is on no flat piece any more; cut so that it is, or place it anew" for s in lost
     ]
     if material is not None:
         new_pieces = {piece.id: piece for piece in after}

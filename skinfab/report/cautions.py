@@ -9,6 +9,7 @@ import numpy as np
 
 from skinfab.flatten.distortion import Distortion, singular_values
 from skinfab.pieces import Piece
+from skinfab.placement.lifted import off_words
 from skinfab.report.words import listed
 from skinfab.skin import Skin
 from skinfab.tolerances import CAUTION_D_MAX, CAUTION_D_P99, CAUTION_WRAP_STRAIN
@@ -18,7 +19,7 @@ _SPELT_OUT = 4
 
 
 def cautions(skin: Skin, distortions: Sequence[Distortion], sensors: Sequence[Mapping[str, Any]]) -> list[str]:
-    """One sentence for each kind of bad figure, with all pieces or sensors it is true of.
+    """Sensors that are off, and one sentence for each kind of bad figure, with all pieces or sensors it is true of.
 
     Parameters
     ----------
@@ -33,7 +34,7 @@ def cautions(skin: Skin, distortions: Sequence[Distortion], sensors: Sequence[Ma
     list of str
         Empty when all is well.
     """
-    return [*_distorted(skin, distortions), *_strained(sensors)]
+    return [*off_words(skin.lifted), *_distorted(skin, distortions), *_strained(sensors)]
 
 
 def worst_place(skin: Skin, piece: Piece, d: Distortion) -> tuple[np.ndarray, float]:

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from skinfab.flatten.distortion import Distortion
 from skinfab.material import Material
 from skinfab.pieces import Piece
-from skinfab.placement.carry import Lifted, carry, put_back
+from skinfab.placement.carry import carry, put_back
+from skinfab.placement.lifted import Lifted, in_line
 from skinfab.placement.sensor import Sensor
 from skinfab.progress import Progress, silent
 from skinfab.seams.auto import find_seams
@@ -52,7 +53,7 @@ class Reopened:
     Parameters
     ----------
     skin : Skin
-        With new pieces, and its sensors where their spots now lie.
+        With new pieces, and its sensors where their spots now lie; those that have none are lifted.
     faults : tuple of Fault
         About parts that lie not flat, pieces that break a limit, and sensors.
     distortions : tuple of Distortion
@@ -61,8 +62,6 @@ class Reopened:
         Sensors whose spot is on no piece any more, as they were.
     back : tuple of Sensor
         Lifted ones that came back.
-    lifted : tuple of Lifted
-        Those that did not, and those that were lost now: what to hand over when the skin is cut the next time.
     """
 
     skin: Skin
@@ -70,7 +69,6 @@ class Reopened:
     distortions: tuple[Distortion, ...]
     lost: tuple[Sensor, ...]
     back: tuple[Sensor, ...] = ()
-    lifted: tuple[Lifted, ...] = ()
 
 
 def reopen(
@@ -81,7 +79,6 @@ def reopen(
     cones: int | None = None,
     anew: Collection[str] = (),
     material: Material | None = None,
-    lifted: Sequence[Lifted] = (),
     progress: Progress = silent,
 ) -> Reopened:
     """The pieces that a skin's seams now give, flattened where they changed.
@@ -103,8 +100,6 @@ def reopen(
         Ids of pieces to flatten by `method` though their cuts did not change.
     material : Material, optional
         Says whether sensors still fit.
-    lifted : sequence of Lifted
-        Sensors that lost their spot to an earlier cut; they come back where they can.
     progress : Progress, optional
 
     Returns
@@ -145,7 +140,6 @@ def reopen(
         faults,
         distortions,
         material=material,
-        lifted=lifted,
     )
 
 
@@ -155,7 +149,6 @@ def auto_cut(
     *,
     neck: float = 4.0,
     material: Material | None = None,
-    lifted: Sequence[Lifted] = (),
     progress: Progress = silent,
 ) -> Reopened:
     """Automatic seams in place of the skin's own: locked ones stay, forbidden edges are left alone, preferences are heeded.
@@ -171,8 +164,6 @@ def auto_cut(
         Pieces are not joined across less than this.
     material : Material, optional
         Says whether sensors still fit.
-    lifted : sequence of Lifted
-        Sensors that lost their spot to an earlier cut; they come back where they can.
     progress : Progress, optional
 
     Raises
@@ -188,25 +179,24 @@ def auto_cut(
     by_first_face = {int(piece.faces[0]): verdict.distortion for piece, verdict in found.pieces}
     new = replace(skin, seams=mesh.topology.E[found.cut & ~mesh.topology.is_boundary], pieces=pieces, max_distortion=limits.mean)
     progress(1.0, "cutting and flattening")
-    return _with_sensors(new, skin, [], [by_first_face[int(piece.faces[0])] for piece in pieces], material=material, lifted=lifted)
+    return _with_sensors(new, skin, [], [by_first_face[int(piece.faces[0])] for piece in pieces], material=material)
 
 
 def _with_sensors(
-    new: Skin,
-    before: Skin,
-    faults: list[Fault],
-    distortions: Sequence[Distortion],
-    *,
-    material: Material | None,
-    lifted: Sequence[Lifted],
+    new: Skin, before: Skin, faults: list[Fault], distortions: Sequence[Distortion], *, material: Material | None
 ) -> Reopened:
     carried = carry(new.mesh, before.sensors, before.pieces, new.pieces, material=material)
+    old, lost = {piece.id: piece for piece in before.pieces}, {sensor.id for sensor in carried.lost}
+    lifted = []
+    for place, each in enumerate(in_line(before.sensors, before.lifted)):
+        if isinstance(each, Lifted):
+            lifted.append(replace(each, place=place))
+        elif each.id in lost and each.piece in old:
+            lifted.append(Lifted(each, old[each.piece], place=place))
     put = put_back(new.mesh, lifted, carried.sensors, new.pieces, material=material)
-    old = {piece.id: piece for piece in before.pieces}
-    off = (Lifted(sensor, old[sensor.piece]) for sensor in carried.lost if sensor.piece in old)
     nowhere = np.zeros(0, dtype=np.int64)
     said = (*faults, *(Fault(remark, nowhere) for remark in carried.remarks))
-    return Reopened(replace(new, sensors=put.sensors), said, tuple(distortions), carried.lost, put.back, (*put.still, *off))
+    return Reopened(replace(new, sensors=put.sensors, lifted=put.still), said, tuple(distortions), carried.lost, put.back)
 
 
 def _is_same(piece: Piece, part: OpenPiece) -> bool:

@@ -14,6 +14,7 @@ from skinfab.document import load_skin, save_skin
 from skinfab.mesh.model import Mesh
 from skinfab.patterns.contact_spiral import ContactSpiral
 from skinfab.pieces import Piece
+from skinfab.placement.lifted import Lifted
 from skinfab.placement.sensor import Sensor
 from skinfab.skin import Skin, Source
 
@@ -248,3 +249,22 @@ def test_refused_and_unusable_skins(tmp_path: Path, capsys: pytest.CaptureFixtur
 )
 def test_wrong_usage(words: list[str]) -> None:
     assert main(["gcode", *words]) == 2
+
+
+def test_sensors_that_are_off_change_nothing_and_are_named(document: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    """What a cut took off in the window lies in the document: commands say so, and `place` makes anew or leaves alone as for any sensor."""
+    skin = load_skin(document)
+    second = replace(skin.sensors[0], id="C2", channel=1)
+    save_skin(replace(skin, lifted=(Lifted(second, skin.pieces[0], place=1),)), tmp_path / "off.skin")
+    off = str(tmp_path / "off.skin")
+    for folder, file in (("out", str(document)), ("off", off)):
+        assert main(["gcode", file, "-o", str(tmp_path / folder)]) == 0
+    (warned,) = capfd.readouterr().err.splitlines()
+    assert warned.startswith("warning: 1 sensor is off (C2) and is not printed")
+    assert (tmp_path / "out/P1.gcode").read_bytes() == (tmp_path / "off/P1.gcode").read_bytes()
+    assert main(["place", off, "--list"]) == 0 and "1 sensor is off (C2)" in capfd.readouterr().err
+    assert main(["place", off, "--shift", "C1", "1", "0"]) == 0
+    (kept,) = load_skin(off).lifted
+    assert kept.sensor == second and load_skin(off).sensors[0].x == 21
+    assert main(["place", off]) == 0
+    assert "the 2 sensors that" in capfd.readouterr().err and load_skin(off).lifted == ()

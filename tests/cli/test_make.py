@@ -5,6 +5,7 @@ import re
 import subprocess
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -18,9 +19,10 @@ from gcode.emit import emit
 from gcode.parse import parse
 from gcode.printer import load_printer
 from skinfab.cli.main import main
-from skinfab.document import load_skin
+from skinfab.document import load_skin, save_skin
 from skinfab.material import load_material
 from skinfab.mould import skin_moulds
+from skinfab.placement.lifted import Lifted
 from skinfab.wire_exits import wire_pads
 
 ROOT = Path(__file__).parents[2]
@@ -200,8 +202,13 @@ def test_a_document_in_place_of_a_mesh(made_once: Callable[[str], Path], tmp_pat
     one, two = tmp_path / "from_skin", made_once("cube")
     for file in ("gcode/P1.gcode", "mould/P1.stl", "flat.obj", "flat.svg", "skin.skin"):
         assert (one / file).read_bytes() == (two / file).read_bytes()
-    assert main(["make", str(one / "skin.skin"), "-o", str(tmp_path / "again")]) == 0  # its sensors are kept
+    # Its sensors are kept; those that are off stay so.
+    cut = load_skin(one / "skin.skin")
+    save_skin(replace(cut, lifted=(Lifted(replace(cut.sensors[0], id="C99"), cut.pieces[0]),)), tmp_path / "off.skin")
+    assert main(["make", str(tmp_path / "off.skin"), "-o", str(tmp_path / "again")]) == 0
     assert (tmp_path / "again/gcode/P1.gcode").read_bytes() == (one / "gcode/P1.gcode").read_bytes()
+    assert (tmp_path / "again/skin.skin").read_bytes() == (tmp_path / "off.skin").read_bytes()
+    assert [w for w in results.read_report(tmp_path / "again")["warnings"] if w.startswith("1 sensor is off (C99)")]
     capfd.readouterr()
     assert main(["make", skin, "-o", str(tmp_path / "x"), "--units", "m"]) == 2
     assert "go with a mesh" in capfd.readouterr().err

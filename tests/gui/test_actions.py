@@ -46,6 +46,23 @@ def test_a_key_does_what_its_menu_says(root, table):
     assert menu.entrycget(1, "state") == "disabled"
 
 
+def test_a_letter_with_alt_opens_a_menu_and_does_nothing_else(root):
+    done = []
+    menus = ("Edit", "Seams", "Sensors", "Export", "Help")
+    listed = [
+        Action(name, name, name, lambda name=name: done.append(name), name[0].lower() if name in ("Edit", "Seams") else "")
+        for name in menus
+    ]
+    bar = Actions(root, listed).menu_bar({})
+    letters = [bar.entrycget(k, "label")[bar.entrycget(k, "underline")].lower() for k in range(len(menus))]
+    assert letters == ["e", "s", "n", "x", "h"]
+    press(root, "Alt-s")
+    press(root, "Alt-e")
+    assert done == []
+    press(root, "s")
+    assert done == ["Seams"]
+
+
 def test_letters_typed_into_a_field_stay_there(root, table):
     _, done, _ = table
     entry = ttk.Entry(root)

@@ -11,8 +11,9 @@ from skinfab.material import load_material
 from skinfab.mesh.model import Mesh
 from skinfab.patterns.registry import make_pattern
 from skinfab.pieces import Piece
-from skinfab.placement.carry import Lifted, carry, put_back
+from skinfab.placement.carry import carry, put_back
 from skinfab.placement.edit import middle_of
+from skinfab.placement.lifted import Lifted
 from skinfab.placement.sensor import Sensor
 from skinfab.seams.cut import open_pieces
 from skinfab.seams.edit import path_edges
@@ -89,7 +90,7 @@ def test_a_spot_that_is_gone_is_said() -> None:
     carried = carry(mesh, [sensor, other], flat_pieces(mesh), flat_pieces(mesh, 4)[1:])
     assert carried.lost == (sensor,) and [s.id for s in carried.sensors] == ["C2"]
     assert carried.remarks == (
-        "C1 was taken off: its spot on the object is on no flat piece any more; cut so that it is, and place it again",
+        "C1 was taken off: its spot on the object is on no flat piece any more; cut so that it is, or place it anew",
     )
     nothing = carry(mesh, [sensor, other], flat_pieces(mesh), [])
     assert nothing.lost == (sensor, other) and len(nothing.remarks) == 2 and nothing.sensors == ()
@@ -131,6 +132,15 @@ def test_a_lifted_sensor_comes_back_to_its_spot() -> None:
     assert put.sensors == (new,) and put.still == ()
     piece = next(p for p in after if p.id == new.piece)
     np.testing.assert_allclose(on_object(mesh, piece, new), on_object(mesh, before[0], sensor), atol=1e-6)
+
+
+def test_returned_sensors_stand_where_they_stood_in_the_list() -> None:
+    mesh = sheet()
+    before, after = flat_pieces(mesh), flat_pieces(mesh, 4, turn=1.0)
+    off = [Lifted(sensor_at(80, 50, id="C1"), before[0], place=0), Lifted(sensor_at(80, 50, id="C2"), before[0], place=2)]
+    there = [dataclasses.replace(sensor_at(20, 50), id=id, channel=channel) for id, channel in (("A", 7), ("B", 5))]
+    put = put_back(mesh, [dataclasses.replace(off[1], sensor=dataclasses.replace(off[1].sensor, channel=3)), off[0]], there, after)
+    assert [s.id for s in put.sensors] == ["C1", "A", "C2", "B"] and [s.id for s in put.back] == ["C1", "C2"]
 
 
 def test_a_lifted_sensor_stays_off_where_it_has_no_spot_or_does_not_fit() -> None:

@@ -13,7 +13,7 @@ from skinfab.flatten.distortion import measure
 from skinfab.material import load_material
 from skinfab.mesh.model import Mesh
 from skinfab.patterns.registry import make_pattern
-from skinfab.placement.carry import Lifted
+from skinfab.placement.lifted import Lifted
 from skinfab.placement.sensor import Sensor
 from skinfab.seams import lenient
 from skinfab.seams.auto import find_seams
@@ -228,22 +228,40 @@ def test_sensors_follow_and_none_is_lost_silently() -> None:
 def test_lifted_sensors_come_back_when_the_skin_is_cut_the_next_time() -> None:
     one = opened(sheet()).skin
     sensors = tuple(Sensor(f"C{k}", "P1", SPIRAL, x, 30.0, 0.0, k) for k, x in ((1, 25.0), (2, 80.0)))
-    lifted = [Lifted(sensor, one.pieces[0]) for sensor in sensors]
-    parted = reopen(cut_path(replace(one, pieces=()), column(7)), LIMITS, lifted=lifted)
-    assert parted.back == parted.skin.sensors and parted.lifted == () and [s.id for s in parted.back] == ["C1", "C2"]
+    none = replace(one, pieces=(), lifted=tuple(Lifted(sensor, one.pieces[0], place=k) for k, sensor in enumerate(sensors)))
+    parted = reopen(cut_path(none, column(7)), LIMITS)
+    assert parted.back == parted.skin.sensors and parted.skin.lifted == () and [s.id for s in parted.back] == ["C1", "C2"]
     assert len({s.piece for s in parted.back}) == 2
-    again = auto_cut(replace(one, pieces=()), LIMITS, lifted=lifted)
-    assert [s.id for s in again.back] == ["C1", "C2"] and again.lifted == ()
+    again = auto_cut(none, LIMITS)
+    assert [s.id for s in again.back] == ["C1", "C2"] and again.skin.lifted == ()
+
+
+def test_sensors_come_back_in_the_order_they_had_however_they_went() -> None:
+    """Three sensors whose order is not that of their channels, taken off one piece after the other."""
+    V, F = cube()
+    flat = opened(cut_path(skin_of(60 * V, F), [0, 1, 3, 2, 6, 7, 5, 4])).skin
+    middle = flat.pieces[0].UV[flat.pieces[0].F[:2].ravel()].mean(axis=0)
+    sensors = tuple(Sensor(id, "P1", SPIRAL, *middle, 0.0, channel) for id, channel in (("C3", 9), ("C1", 4), ("C2", 7)))
+    closed = reopen(replace(flat, seams=NO_SEAMS, sensors=sensors[::2]), LIMITS).skin
+    assert closed.sensors == () and [(each.sensor.id, each.place) for each in closed.lifted] == [("C3", 0), ("C2", 1)]
+    # Another one between them was off before: it counts.
+    before = replace(flat, seams=NO_SEAMS, sensors=sensors[::2], lifted=(Lifted(sensors[1], flat.pieces[0], place=1),))
+    all_off = reopen(before, LIMITS).skin
+    assert [(each.sensor.id, each.place) for each in all_off.lifted] == [("C3", 0), ("C1", 1), ("C2", 2)]
+    back = reopen(replace(all_off, seams=flat.seams), LIMITS).skin
+    assert back.lifted == () and [s.id for s in back.sensors] == ["C3", "C1", "C2"]
+    one_off = replace(flat, sensors=sensors[::2], lifted=(replace(all_off.lifted[1], why="overlaps C9"),))
+    assert [s.id for s in reopen(one_off, LIMITS).skin.sensors] == ["C3", "C1", "C2"]
 
 
 def test_what_a_cut_takes_off_is_lifted() -> None:
     flat = opened(cut_path(skin_of(*cube()), [0, 1, 3, 2, 6, 7, 5, 4])).skin
     sensor = Sensor("C1", "P1", SPIRAL, *flat.pieces[0].UV[flat.pieces[0].F[:2].ravel()].mean(axis=0), 0.0, 1)
     closed = reopen(replace(flat, seams=NO_SEAMS, sensors=(sensor,)), LIMITS)
-    (lifted,) = closed.lifted
+    (lifted,) = closed.skin.lifted
     assert closed.skin.sensors == () and lifted.sensor is sensor and lifted.piece is flat.pieces[0]
-    still = reopen(closed.skin, LIMITS, lifted=closed.lifted)
-    assert [each.sensor for each in still.lifted] == [sensor] and still.lost == still.back == ()
+    still = reopen(closed.skin, LIMITS)
+    assert [each.sensor for each in still.skin.lifted] == [sensor] and still.lost == still.back == ()
 
 
 def test_degenerate_triangles_do_not_raise() -> None:

@@ -9,6 +9,7 @@ from person import MESHES
 from skinfab.flatten.mapping import FlatMap
 from skinfab.patterns.registry import make_pattern
 from skinfab.placement.edit import middle_of
+from skinfab.placement.lifted import Lifted
 from skinfab.placement.sensor import Sensor
 
 SPREAD = np.array([[0, 1], [1, 3], [2, 3], [2, 6], [6, 7], [5, 7], [4, 5]])
@@ -267,3 +268,53 @@ def test_a_thickness_that_folds_is_said_in_the_windows_words_and_the_materials_o
     form.usual.invoke()
     person.wait()
     assert person.skin.thickness == 2.5 and person.problems() == [] and any("rounded off" in text for text in person.problems("warning"))
+
+
+def test_sensors_that_are_off_are_saved_and_come_back_in_the_document_that_is_opened_again(cube, tmp_path):
+    cut(cube)
+    cube.wait()
+    with_two(cube)
+    before = cube.skin.sensors
+    cut(cube, SPREAD[:1], "glued")
+    cube.wait()
+    assert cube.skin.sensors == () and [each.sensor.id for each in cube.skin.lifted] == ["C2", "C1"]
+    cube.answers.path = tmp_path / "off.skin"
+    assert cube.app.files.save_as() and not cube.session.dirty
+    cube.open(MESHES / "cup.obj")
+    cube.open(tmp_path / "off.skin")
+    assert not cube.session.dirty and "2 sensors taken off P1 until it lies flat again" in cube.problems("warning")
+    cut(cube)
+    cube.wait()
+    assert [(s.id, s.channel) for s in cube.skin.sensors] == [("C2", 0), ("C1", 1)] and cube.skin.lifted == ()
+    assert cube.app.status.text.get() == "2 sensors are back on P1." and cube.problems() == []
+    for old, new in zip(before, cube.skin.sensors, strict=True):
+        assert (new.x, new.y) == pytest.approx((old.x, old.y), abs=1e-6)
+    cube.app.actions.do("undo")
+    cube.wait()
+    assert cube.skin.sensors == () and len(cube.skin.lifted) == 2
+    cube.app.actions.do("redo")
+    cube.wait()
+    assert [s.id for s in cube.skin.sensors] == ["C2", "C1"] and cube.skin.lifted == ()
+
+
+def test_a_new_sensor_leaves_names_and_channels_to_those_that_are_off(cube):
+    cut(cube)
+    cube.wait()
+    with_two(cube)
+    off = tuple(Lifted(s, cube.skin.pieces[0], place=k) for k, s in enumerate(cube.skin.sensors))
+    cube.session.do("off", replace(cube.skin, sensors=(), lifted=off))
+    cube.wait()
+    cube.press("s")
+    (piece,) = cube.skin.pieces
+    cube.click_flat(cube.flat_place(piece.id, piece.UV[piece.F[4]].mean(axis=0)))
+    assert [(s.id, s.channel) for s in cube.skin.sensors] == [("C3", 2)] and len(cube.skin.lifted) == 2
+    cube.app.root.update()
+
+
+def with_two(person):
+    """Two sensors on the only piece, in an order that is not that of their names."""
+    (piece,) = person.skin.pieces
+    spiral = make_pattern("contact-spiral", {"s": 20})
+    middles = [piece.UV[piece.F[[k, k + 1]].ravel()].mean(axis=0) for k in (0, 4)]
+    sensors = tuple(Sensor(id, piece.id, spiral, *xy, 0.0, k) for k, (id, xy) in enumerate(zip(("C2", "C1"), middles, strict=True)))
+    person.session.do("two", replace(person.skin, sensors=sensors))

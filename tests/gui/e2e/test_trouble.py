@@ -85,11 +85,17 @@ def test_a_file_that_is_no_mesh_leaves_a_sentence(start: Callable[..., Window], 
 
 
 def test_what_a_crash_left_is_offered_and_comes_back(start: Callable[..., Window]) -> None:
+    """With sensors that were off when it came."""
     window = start(MESHES / "cube.obj")
     window.open_mesh()
     window.settled()
     cut_cube(window)
-    lost = window.wait_kept(lambda s: len(s.pieces) > 0, "there are pieces")
+    window.key("F7")
+    placed = window.wait_kept(lambda s: len(s.sensors) > 0, "there are sensors")
+    window.settled()
+    window.key("alt+a", *["Down"] * int(window.tcl(".menu.seams index {Glue all seams that are not locked}")), "Return")
+    lost = window.wait_kept(lambda s: len(s.lifted) > 0, "sensors are off")
+    assert lost.pieces == lost.sensors == () and [each.sensor for each in lost.lifted] == list(placed.sensors)
     workers = window.workers()
     assert workers
     window.kill()
@@ -100,8 +106,13 @@ def test_what_a_crash_left_is_offered_and_comes_back(start: Callable[..., Window
     again.answer("Open the copy")
     until(lambda: again.title.startswith("*cube.obj"), "the document, with its changes unsaved")
     back = again.wait_kept(lambda s: True, "is kept anew")
-    assert np.array_equal(back.seams, lost.seams) and len(back.pieces) == len(lost.pieces)
-    assert all(np.array_equal(a.UV, b.UV) for a, b in zip(back.pieces, lost.pieces, strict=True))
+    assert np.array_equal(back.seams, lost.seams) and [each.sensor for each in back.lifted] == list(placed.sensors)
+    assert all(np.array_equal(a.piece.UV, b.piece.UV) for a, b in zip(back.lifted, lost.lifted, strict=True))
+    again.settled()
+    again.key("F5")
+    open_again = again.wait_kept(lambda s: not s.lifted, "no sensor is off")
+    assert [s.id for s in open_again.sensors] == [s.id for s in placed.sensors]
+    assert all(np.array_equal(a.UV, b.UV) for a, b in zip(open_again.pieces, placed.pieces, strict=True))
 
 
 def test_unsaved_work_is_asked_about_and_the_worker_ends_too(start: Callable[..., Window], tmp_path: Path) -> None:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from gui.jobs.parcel import receive, send, shared
-from skinfab.placement.carry import Lifted
+from skinfab.placement.lifted import Lifted
 
 
 def through(message, known=(), theirs=()):
@@ -51,7 +51,10 @@ def test_who_is_gone_is_an_end_not_a_wait():
 
 
 def test_lifted_sensors_come_back_with_their_own_pieces(skin):
-    ours = {"lifted": (Lifted(skin.sensors[0], skin.pieces[0]),)}
+    ours = {"skin": replace(skin, pieces=(), sensors=(), lifted=(Lifted(skin.sensors[0], skin.pieces[0], "overlaps C9", 3),))}
     theirs = through(ours)
-    back = through(theirs["lifted"], shared(theirs), shared(ours))
-    assert back[0].piece is skin.pieces[0] and back[0].sensor is skin.sensors[0]
+    (back,) = through(theirs["skin"].lifted, shared(theirs), shared(ours))
+    assert back is ours["skin"].lifted[0]
+    waiting = replace(theirs["skin"].lifted[0], why="")
+    (back,) = through((waiting,), shared(theirs), shared(ours))
+    assert back.piece is skin.pieces[0] and back.sensor is skin.sensors[0] and (back.why, back.place) == ("", 3)

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from gui.state.lifted import taken_off
-from skinfab.placement.carry import Lifted
+from skinfab.placement.lifted import Lifted
 
 
 def test_one_line_a_piece_and_one_for_each_that_does_not_fit(skin):
