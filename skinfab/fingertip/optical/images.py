@@ -6,6 +6,7 @@ import math
 import re
 import threading
 import time
+from abc import ABC, abstractmethod
 from collections import deque
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -78,7 +79,7 @@ class ImageSource(Protocol):
         ...
 
 
-class _Pictures:
+class _Pictures(ABC):
     """What every image source is alike in."""
 
     def __init__(self, name: str, rate_hz: float) -> None:
@@ -97,14 +98,14 @@ class _Pictures:
     def __exit__(self, kind: type[BaseException] | None, fault: BaseException | None, trace: TracebackType | None) -> None:
         self.close()
 
-    def open(self) -> Self:
-        raise NotImplementedError
+    @abstractmethod
+    def open(self) -> Self: ...
 
-    def close(self) -> None:
-        raise NotImplementedError
+    @abstractmethod
+    def close(self) -> None: ...
 
-    def read(self, timeout: float | None = None) -> Picture | None:
-        raise NotImplementedError
+    @abstractmethod
+    def read(self, timeout: float | None = None) -> Picture | None: ...
 
 
 class FolderImages(_Pictures):
