@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from skinfab.bench import nail_force, nail_window
+from skinfab.bench import nail_confidence, nail_force, nail_window
 from skinfab.bench.flatten import REPEATS, read_csv, write_csv
 from skinfab.bench.nail_ablation import ablate
 from skinfab.fingertip.nail.improved import improved_answers
@@ -32,8 +32,8 @@ PUBLISHED, IMPROVED = "published", "improved"
 FULL = "AxAyAzGxGyGz"
 #: With fewer participants no corrected comparison of nine conditions (36 pairs) shows what the paper's ten do.
 LEAST_PARTICIPANTS = 6
-#: Parts of the time: the three tests, then the ablation, then forces; the window's lengths are the rest.
-_TESTS_DONE, _TERMS_DONE, _FORCES_DONE = 0.4, 0.75, 0.8
+#: Parts of the time: the three tests, then the ablation, then forces, then confidence; the window's lengths are the rest.
+_TESTS_DONE, _TERMS_DONE, _FORCES_DONE, _SURE_DONE = 0.4, 0.75, 0.8, 0.82
 
 
 @dataclass(frozen=True)
@@ -141,10 +141,20 @@ def run(
     write_csv(ablate(protocol, seed=seed, progress=part_of(progress, _TESTS_DONE, _TERMS_DONE)), folder / "nail_ablation.csv")
     pressed = nail_force.measure(protocol, tuple(TESTS), seed=seed, progress=part_of(progress, _TERMS_DONE, _FORCES_DONE))
     write_csv(pressed, folder / "nail_force.csv")
+    told = nail_confidence.measure(protocol, tuple(TESTS), progress=part_of(progress, _FORCES_DONE, _SURE_DONE))
+    write_csv(told, folder / "nail_confidence.csv")
     # From here on only what the tables hold is used, so that charts and sentence cannot say anything else.
-    table, pairs, terms, forces = (read_csv(folder / f"nail{part}.csv") for part in ("", "_pairs", "_ablation", "_force"))
-    windows = nail_window.run(folder, repeats=repeats, progress=part_of(progress, _FORCES_DONE, 1.0), protocol=protocol)
-    said = f"{sentence(table, pairs, participants=protocol.participants)} {nail_force.sentence(forces)} {windows['sentence']}"
+    parts = ("", "_pairs", "_ablation", "_force", "_confidence")
+    table, pairs, terms, forces, sure = (read_csv(folder / f"nail{part}.csv") for part in parts)
+    windows = nail_window.run(folder, repeats=repeats, progress=part_of(progress, _SURE_DONE, 1.0), protocol=protocol)
+    said = " ".join(
+        [
+            sentence(table, pairs, participants=protocol.participants),
+            nail_force.sentence(forces),
+            nail_confidence.sentence(sure),
+            windows["sentence"],
+        ]
+    )
     notes = [
         f"simulated participants ({protocol.participants}, seed {seed}); what the simulator leaves out stands in docs/nail.md",
         *(f"{test}: {found}" for test, found in compared.items()),
@@ -152,9 +162,10 @@ def run(
     ]
     atomic_write(folder / "nail.txt", "\n".join([said, *notes]) + "\n")
     draw_accuracy(table, folder / "nail.png")
+    nail_confidence.draw(sure, folder / "nail_confidence.png")
     for test, outcome in outcomes.items():
         draw_confusion(outcome, folder / f"nail_confusion_{test}.png")
-    found = {"rows": table, "pairs": pairs, "ablation": terms, "forces": forces, "windows": windows["rows"]}
+    found = {"rows": table, "pairs": pairs, "ablation": terms, "forces": forces, "confidence": sure, "windows": windows["rows"]}
     return {"sentence": said, "notes": notes, "simulated": True, **found}
 
 

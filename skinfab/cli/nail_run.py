@@ -136,16 +136,18 @@ def _judged(path: Path, log: Log, told: Sequence[Told], samples: int, content: A
 
     from skinfab.errors import InputError
     from skinfab.fingertip.confusion import grouped_accuracy
+    from skinfab.fingertip.nail.doubles import without_doubles
     from skinfab.fingertip.nail.labels import read_labels
 
     labels, _ = read_labels(path)
     own = [each for each in labels if each.log == log.file]
     if not own:
         raise InputError(f"{path} has no row of {log.file}; give the table that goes with the log")
+    rows, notes = without_doubles(own, [each.log for each in own], path)
+    own = [own[k] for k in rows]
     learned = content.made_from.get("learned")
     spans = (learned or {}).get(log.sha256, [])
     fresh = [each for each in own if not any(each.start_s < end and start < each.end_s for start, end in spans)]
-    notes = []
     if learned is None:
         notes.append("the model does not say which trials it learned from; where they are among these, more is right than of new ones")
     if left_out := len(own) - len(fresh):

@@ -67,7 +67,8 @@ def run(args: argparse.Namespace) -> int:
     with staged_folder(args.output) as folder, terminal_progress(quiet=args.json) as progress:
         for number in range(1, args.participants + 1):
             progress((number - 1) / args.participants, f"participant {number} of {args.participants}")
-            labels += _written(folder, session(args.test, number, protocol=protocol, scene=scene, seed=args.seed))
+            recorded = session(args.test, number, protocol=protocol, scene=scene, seed=args.seed, in_a_row=True)
+            labels += _written(folder, recorded)
         write_labels(folder / TABLE, labels, simulated=True)
         files = sorted(file.name for file in folder.iterdir())
         progress(1.0, "done")

@@ -62,7 +62,7 @@ def run(args: argparse.Namespace) -> int:
     else:
         targets, more = learnable(targets_of([trials[k].label for k in rows]))
         notes += more
-        model = made.fit(rows)
+        model = made.fit(rows, across=across)
         regression = Regression(model, targets)
         if model.at_rest is not None and not model.gate_is_safe:
             notes.append("some trials with contact are as much like rest as those without; contact will be mistaken at times: press harder")
@@ -142,7 +142,16 @@ def _facts(held: Held) -> dict[str, Any]:
         "accuracy": {"value": rate.value, "low": rate.low, "high": rate.high},
         "mean_angle_error_deg": _mean(held.angle_deg),
         "mean_place_error_mm": _mean(held.place_mm),
+        "confidence": _confidence(held),
     }
+
+
+def _confidence(held: Held) -> dict[str, float] | None:
+    """Of the windows that were taken for contacts: how sure it was in the mean, and how many of them were right."""
+    import numpy as np
+
+    told = np.isfinite(held.confidence)
+    return {"mean": float(held.confidence[told].mean()), "right": float(held.right[told].mean())} if told.any() else None
 
 
 def _mean(values: Any) -> float | None:
@@ -168,6 +177,8 @@ def _lines(result: dict[str, Any], held: dict[str, Held]) -> list[str]:
         for key, unit in (("mean_angle_error_deg", "degrees"), ("mean_place_error_mm", "mm")):
             if facts[key] is not None and math.isfinite(facts[key]):
                 line += f", off by {facts[key]:.1f} {unit} in the mean"
+        if facts["confidence"]:
+            line += f", confidence {facts['confidence']['mean']:.2f} where {facts['confidence']['right']:.2f} of the contacts are right"
         lines.append(line)
     if any("off by" in line for line in lines):
         lines.append("  (off from what the table says was touched: where a finger was aimed at, not where it came to lie)")

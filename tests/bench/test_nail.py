@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from skinfab.bench import nail, nail_ablation, nail_force
+from skinfab.bench import nail, nail_ablation, nail_confidence, nail_force
 from skinfab.bench.flatten import read_csv
 from skinfab.bench.nail import FULL, IMPROVED, PUBLISHED, run, sentence
 from skinfab.bench.nail_ablation import NOTHING, TERMS, ablate
@@ -34,13 +34,14 @@ def ran(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, Any],
 
 def test_tables_charts_and_a_sentence_are_written(ran: tuple[Path, dict[str, Any], list[float]]) -> None:
     folder, found, seen = ran
-    charts = ["nail.png", f"nail_confusion_{TEST}.png", "nail_window.png"]
+    charts = ["nail.png", f"nail_confusion_{TEST}.png", "nail_confidence.png", "nail_window.png"]
     assert {p.name for p in folder.iterdir()} >= {
         "nail.csv",
         "nail_pairs.csv",
         "nail_ablation.csv",
         "nail_confusion.csv",
         "nail_force.csv",
+        "nail_confidence.csv",
         "nail.txt",
         *charts,
     }
@@ -48,7 +49,7 @@ def test_tables_charts_and_a_sentence_are_written(ran: tuple[Path, dict[str, Any
     assert seen == sorted(seen) and 0 <= seen[0] and seen[-1] <= 1
     json.dumps(found, allow_nan=False)
     assert found["simulated"] is True
-    for name in ("nail.csv", "nail_pairs.csv", "nail_ablation.csv", "nail_force.csv"):
+    for name in ("nail.csv", "nail_pairs.csv", "nail_ablation.csv", "nail_force.csv", "nail_confidence.csv"):
         assert all(row["simulated"] == 1 for row in read_csv(folder / name))
 
 
@@ -75,7 +76,8 @@ def test_the_sentence_is_the_tables(ran: tuple[Path, dict[str, Any], list[float]
     table, pairs = read_csv(folder / "nail.csv"), read_csv(folder / "nail_pairs.csv")
     assert (folder / "nail.txt").read_text().splitlines()[0] == found["sentence"]
     windows = (folder / "nail_window.txt").read_text().splitlines()[0]
-    assert found["sentence"] == f"{sentence(table, pairs, participants=3)} {nail_force.sentence(found['forces'])} {windows}"
+    forces, sure = nail_force.sentence(found["forces"]), nail_confidence.sentence(found["confidence"])
+    assert found["sentence"] == f"{sentence(table, pairs, participants=3)} {forces} {sure} {windows}"
     known = [row for row in table if row["paper"] is not None]
     assert len(known) == 8 and " of 8 accuracies" in found["sentence"]
     for row in known:

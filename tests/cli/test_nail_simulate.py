@@ -34,7 +34,7 @@ def test_labels_cut_the_logs_into_the_very_trials(folder: Path) -> None:
     assert len(trials) == 2 * (5 * 2 + 4)
     protocol = Protocol(2, 2, 1, 1, 64)
     for number in (1, 2):
-        made = session("edges4", number, protocol=protocol)
+        made = session("edges4", number, protocol=protocol, in_a_row=True)
         own = [each for each in trials if each.label.participant == str(number)]
         for part, of in (("train", made.training), ("test", made.rounds)):
             readings = np.array([each.values for each in own if each.label.part == part])

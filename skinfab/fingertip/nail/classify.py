@@ -8,7 +8,7 @@ little of a scatter in twelve dimensions, so it is drawn towards its diagonal me
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skinfab.errors import InputError
+from skinfab.fingertip.nail.confidence import UNKNOWN, probabilities, temperature_of
 from skinfab.fingertip.nail.labels import NOTHING
 from skinfab.fingertip.nail.phasors import ComplexArray, reference_of, turned, turned_phasors
 from skinfab.fingertip.nail.units import CHANNELS
@@ -25,16 +26,14 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 
-#: How sure it is to be is chosen among these factors on squared distances: few trials make any model too sure.
-_TEMPERATURES = (1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 9.0)
 #: Turning takes one direction out of the features, so that without any drawing their scatter could not be inverted.
 LEAST_SHRINKAGE = 1e-3
-#: Parts of a cross-validation.
-_FOLDS = 5
+#: Parts of the cross-validation that says how sure one may be: with five, models of four fifths of few trials err too much.
+_FOLDS = 10
 #: Scatter of trials as a part of that of classes, where no class has a second trial that would tell it.
 _UNKNOWN_SCATTER = 0.25
-#: A window without noise; and a probability that is none.
-_LONG, _LEAST = 10**9, 1e-12
+#: A window without noise.
+_LONG = 10**9
 #: Squared distance, in its median among the trials learned from, beyond which a window is like nothing that was learned.
 STRANGE = 10.0
 
@@ -180,14 +179,16 @@ class NailModel:
 
     def decide_phasors(self, drive: ComplexArray, samples: int) -> Decisions:
         """Decide on phasors (n, 6) of windows of so many readings."""
-        return self._decide(self.features(drive), self.whitener(samples), self.temperature)
+        return self._decide(self.features(drive), self.whitener(samples))
 
-    def _decide(self, x: FloatArray, L: FloatArray, temperature: float) -> Decisions:
-        white = x @ L.T
-        squared = ((white[:, None] - self.means @ L.T) ** 2).sum(axis=2)
-        nearest = squared.min(axis=1)
-        weight = np.exp((nearest[:, None] - squared) / (2 * temperature))
-        probability = weight / weight.sum(axis=1, keepdims=True)
+    def _apart(self, x: FloatArray, L: FloatArray) -> FloatArray:
+        """Squared distances of features (n, 2 c) from the classes that are touched, (n, k)."""
+        out: FloatArray = (((x @ L.T)[:, None] - self.means @ L.T) ** 2).sum(axis=2)
+        return out
+
+    def _decide(self, x: FloatArray, L: FloatArray) -> Decisions:
+        squared = self._apart(x, L)
+        nearest, probability = squared.min(axis=1), probabilities(squared, self.temperature)
         best = squared.argmin(axis=1)
         classes, confidence = self.touched[best], probability[np.arange(len(x)), best]
         contact = np.ones(len(x), dtype=bool)
@@ -237,7 +238,15 @@ class NailModel:
 
 
 def fit_phasors(
-    names: Sequence[str], classes: IntArray, drive: ComplexArray, noise: FloatArray, *, rate_hz: float, drive_hz: float, seed: int = 0
+    names: Sequence[str],
+    classes: IntArray,
+    drive: ComplexArray,
+    noise: FloatArray,
+    *,
+    rate_hz: float,
+    drive_hz: float,
+    groups: Sequence[Hashable] | None = None,
+    seed: int = 0,
 ) -> NailModel:
     """Learn from trials.
 
@@ -252,6 +261,9 @@ def fit_phasors(
     noise : (n, 6) float
         Of a reading.
     rate_hz, drive_hz : float
+    groups : sequence of n, optional
+        Trials that are not independent of each other, such as those of one participant where the model is for another; each is one of
+        its own where they are left out.
     seed : int
         Of the cross-validation that says how sure the model may be.
 
@@ -276,9 +288,9 @@ def fit_phasors(
         raise InputError(f"{len(plain.touched)} class of contact is among the trials, and at least two are needed; record another one")
     rest, spare = _residuals(plain)
     if spare == 0:  # how trials scatter is not known, nor then how sure one may be
-        return replace(plain, temperature=_TEMPERATURES[-1])
+        return replace(plain, temperature=UNKNOWN)
     made = replace(plain, shrinkage=max(float(ledoit_wolf_shrinkage(rest, assume_centered=True)), LEAST_SHRINKAGE))
-    return replace(made, temperature=_temperature(made, seed))
+    return replace(made, temperature=_temperature(made, groups, seed))
 
 
 def _residuals(model: NailModel) -> tuple[FloatArray, int]:
@@ -288,22 +300,18 @@ def _residuals(model: NailModel) -> tuple[FloatArray, int]:
     return model.learned[rows] - model.means[place], int(rows.sum()) - len(model.touched)
 
 
-def _temperature(model: NailModel, seed: int) -> float:
-    """The factor with which held-out trials are most probable: the mean of all, each by that probability.
-
-    The single best one would jump about among trials as few as these.
-    """
+def _temperature(model: NailModel, groups: Sequence[Hashable] | None, seed: int) -> float:
+    """What trials ask for whose whole group was held out."""
     rows = np.flatnonzero(np.isin(model.classes, model.touched))
-    folds = min(_FOLDS, int(np.bincount(model.classes[rows])[model.touched].min()))
-    if folds < 2:
-        return _TEMPERATURES[-1]
-    lost = np.zeros(len(_TEMPERATURES))
-    for kept, held in group_folds(rows.tolist(), k=folds, strata=model.classes[rows].tolist(), seed=seed):
+    of = rows.tolist() if groups is None else [groups[k] for k in rows.tolist()]
+    folds = min(_FOLDS, len(set(of)))
+    apart, columns = [], []
+    for kept, held in group_folds(of, k=folds, strata=model.classes[rows].tolist(), seed=seed) if folds > 1 else []:
         part = replace(model, classes=model.classes[rows[kept]], drive=model.drive[rows[kept]])
-        column = np.searchsorted(part.touched, model.classes[rows[held]])
-        x, L = part.features(model.drive[rows[held]]), part.whitener(_LONG)
-        for i, temperature in enumerate(_TEMPERATURES):
-            p = part._decide(x, L, temperature).probability[np.arange(len(held)), column]
-            lost[i] -= np.log(np.maximum(p, _LEAST)).sum()
-    weight = np.exp(lost.min() - lost)
-    return float(weight @ np.array(_TEMPERATURES) / weight.sum())
+        if len(part.touched) < len(model.touched):  # a class of one trial: nothing is known of it without
+            continue
+        # Means of fewer trials are worse by as much as this, and the model in the file has all of them.
+        fewer, every = (np.bincount(of.classes)[model.touched] for of in (part, model))
+        apart.append(part._apart(part.features(model.drive[rows[held]]), part.whitener(_LONG)) * (1 + 1 / every) / (1 + 1 / fewer))
+        columns.append(np.searchsorted(part.touched, model.classes[rows[held]]))
+    return temperature_of(np.concatenate(apart), np.concatenate(columns)) if apart else UNKNOWN

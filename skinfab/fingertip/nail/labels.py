@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from skinfab.errors import InputError
 from skinfab.files import atomic_write
+from skinfab.fingertip.nail.doubles import without_doubles
 from skinfab.fingertip.nail.units import channel_columns, units_said
 from skinfab.readout.checks import check_times
 from skinfab.readout.frame import Recording
@@ -179,7 +180,8 @@ def read_trials(path: str | Path) -> tuple[list[Trial], bool, list[str]]:
     Raises
     ------
     InputError
-        As `read_labels`; a log cannot be read, has none of the channels, ends before a trial does, or lacks most of one.
+        As `read_labels` and `without_doubles`; a log cannot be read, has none of the channels, ends before a trial does, or lacks most
+        of one.
     """
     path = Path(path)
     labels, simulated = read_labels(path)
@@ -207,7 +209,8 @@ def read_trials(path: str | Path) -> tuple[list[Trial], bool, list[str]]:
                 f"{each.end_s:g} s; leave that row out, or record the trial again"
             )
         trials.append(Trial(each, values[first:last], bad[first:last], rate, sha256, said))
-    return trials, simulated, notes
+    rows, doubled = without_doubles(labels, [each.sha256 for each in trials], path)
+    return [trials[k] for k in rows], simulated, notes + doubled
 
 
 def six_channels(recording: Recording) -> tuple[FloatArray, NDArray[np.bool_]]:

@@ -27,6 +27,10 @@ BoolArray = NDArray[np.bool_]
 
 #: The motor's frequency is found in so many readings, and again after so many.
 _FOLLOWED, _AGAIN = 256, 64
+#: Where nothing stands out of the newest readings any more, it may be that the phase jumped in them, as where trials were put together
+#: to one log: it is off only if so many readings later it still is.
+_LOOK_TWICE = 16
+_LOOKED_AT = (FIND_SHORTEST, FIND_SHORTEST // 2, _LOOK_TWICE)
 #: Most readings of a window.
 _LONGEST = 16384
 #: A log's rate may differ so much from the model's: a phasor's channels answer by frequency, not by rate, but a window's length is told
@@ -132,7 +136,7 @@ class NailWatch:
         # Twice as long as needed, written twice: so the newest readings always lie in one piece.
         self._size = max(self.samples, _FOLLOWED)
         self._rows = np.full((2 * self._size, 6), np.nan)
-        self._count = self._since = 0
+        self._count, self._since, self._again, self._doubted = 0, 0, _AGAIN, False
         self._sequence: int | None = None
         self.turning: bool | None = None
 
@@ -151,7 +155,7 @@ class NailWatch:
         if self._sequence is not None:
             gap = sequence - self._sequence - 1
             if gap < 0:  # the device began anew, so that phases before it mean nothing
-                self._count = self._since = 0
+                self._count, self._since, self._again, self._doubted = 0, 0, _AGAIN, False
                 self.turning = None
                 gap = 0
             self.lost += gap
@@ -169,7 +173,7 @@ class NailWatch:
         self._rows[at] = self._rows[at + self._size] = row
         self._count += 1
         self._since += 1
-        if self._count % _AGAIN == 0:
+        if self._count >= self._again:
             self._follow()
 
     def _newest(self, count: int) -> FloatArray:
@@ -177,12 +181,17 @@ class NailWatch:
         return self._rows[end - count : end]
 
     def _follow(self) -> None:
+        self._again = self._count + _AGAIN
         newest = self._newest(min(self._count, _FOLLOWED))
         if min(np.isfinite(each).any(axis=1).mean() for each in (newest, newest[-FIND_SHORTEST:])) < 0.5:
             return  # mostly a gap: what was known before is better
         found = float(find_drive(newest[None], self._rate)[0])
         # The newest readings alone say that it was switched off just now.
-        self.turning = math.isfinite(found) and bool(turns(newest[None, -FIND_SHORTEST:], self._rate, found)[0])
+        turning = math.isfinite(found) and any(bool(turns(newest[None, -n:], self._rate, found)[0]) for n in _LOOKED_AT)
+        if self.turning and not turning and not self._doubted:
+            self._doubted, self._again = True, self._count + _LOOK_TWICE
+            return
+        self._doubted, self.turning = False, turning
         if self.turning and self._count >= _FOLLOWED and not self._published:
             self.drive_hz = found
 

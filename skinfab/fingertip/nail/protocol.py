@@ -18,7 +18,7 @@ from skinfab.fingertip.confusion import Confusion
 from skinfab.fingertip.nail.finger import Finger
 from skinfab.fingertip.nail.patterns import TESTS
 from skinfab.fingertip.nail.published import CONDITIONS, columns, fit, histograms, modes
-from skinfab.fingertip.nail.simulator import WINDOW, Scene, Touch, participant, readings, touch
+from skinfab.fingertip.nail.simulator import WINDOW, Scene, Touch, participant, readings, running, touch
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -122,7 +122,9 @@ class Outcome:
         return float(self.accuracy[condition].std(ddof=1))
 
 
-def session(test: str, number: int, *, protocol: Protocol | None = None, scene: Scene | None = None, seed: int = 0) -> Session:
+def session(
+    test: str, number: int, *, protocol: Protocol | None = None, scene: Scene | None = None, seed: int = 0, in_a_row: bool = False
+) -> Session:
     """Record one participant; the same seed gives the same finger in all three tests, and other touches.
 
     Parameters
@@ -131,6 +133,8 @@ def session(test: str, number: int, *, protocol: Protocol | None = None, scene: 
         One of `TESTS`.
     number : int
         Of the participant, from 1.
+    in_a_row : bool
+        The motor runs on from each trial to the next, as in one log of all of them; else each is recorded for itself.
     """
     if test not in TESTS:
         raise InputError(f"there is no test {test!r}; there are {', '.join(TESTS)}")
@@ -138,9 +142,15 @@ def session(test: str, number: int, *, protocol: Protocol | None = None, scene: 
     finger = participant(np.random.default_rng([seed, number]), scene)
     rng = np.random.default_rng([seed, number, _TEST_NUMBER[test]])
 
+    drive_hz = (scene or Scene()).drive_hz
+    turned = 0.0
+
     def recorded(classes: IntArray, estimates: int) -> Trials:
+        nonlocal turned
         touches = tuple(touch(None if k == 0 else patterns[k - 1], rng, scene) for k in classes)
-        values = readings(finger, touches, rng, samples=estimates * p.samples, scene=scene)
+        samples = estimates * p.samples
+        *begun, turned = running(drive_hz, samples, len(touches) + 1, begun=turned)
+        values = readings(finger, touches, rng, samples=samples, scene=scene, begun=np.array(begun) if in_a_row else None)
         return Trials(touches, classes, values.reshape(len(classes), estimates, p.samples, 6))
 
     training = recorded(np.repeat(np.arange(len(patterns) + 1), p.training), 1)

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skinfab.fingertip.nail.classify import STRANGE, NailModel
+from skinfab.fingertip.nail.confidence import LAPSE
 from skinfab.fingertip.nail.labels import NOTHING
 from skinfab.fingertip.nail.phasors import BLOCK, ComplexArray, lock_in_weights, turned_phasors
 from skinfab.fingertip.nail.regress import Continuous, Regression, continuous_of
@@ -119,7 +120,8 @@ class Reader:
         if not contact:
             return Decision(NOTHING, 1.0, False, False, Continuous())
         found = Continuous() if self.regression is None else continuous_of(self.regression.estimate(x))
-        return Decision(self._names[best], 1 / total, True, nearest > self._usual, found)
+        sure = (1 - LAPSE) / total + LAPSE / len(squared)
+        return Decision(self._names[best], sure, True, nearest > self._usual, found)
 
     def _with_gaps(self, window: FloatArray, drive_hz: float) -> Decision:
         # A channel without any reading first: without it the others may be whole.

@@ -204,13 +204,16 @@ def readings(
     samples: int = WINDOW,
     scene: Scene | None = None,
     drift_hz_per_s: float = 0.0,
+    begun: FloatArray | None = None,
 ) -> FloatArray:
-    """What the sensor reads of each touch, (n, samples, 6) in G and deg/s; the motor's phase at the first sample is any.
+    """What the sensor reads of each touch, (n, samples, 6) in G and deg/s.
 
     Parameters
     ----------
     drift_hz_per_s : float
         How fast the motor changes its speed; the finger's answer is taken at the speed it began with.
+    begun : (n,) float, optional
+        The motor's phase at each first sample, turns (see `running`); any where it is left out.
     """
     scene = scene or Scene()
     if samples < 1:
@@ -218,7 +221,8 @@ def readings(
     z = phasors(finger, touches)
     time = np.arange(samples) / RATE_HZ
     drive = np.array([each.drive_hz for each in touches])[:, None]
-    cycles = rng.uniform(size=(len(touches), 1)) + drive * time + drift_hz_per_s * time**2 / 2
+    first = rng.uniform(size=len(touches)) if begun is None else begun
+    cycles = first[:, None] + drive * time + drift_hz_per_s * time**2 / 2
     turn = np.exp(2j * math.pi * cycles)[..., None]
     out = (z[:, None] * turn).real
     out[..., 2] += scene.gravity_g
@@ -226,6 +230,17 @@ def readings(
     ends = np.repeat([scene.range_g, scene.range_dps], 3)
     clipped: FloatArray = np.clip(out, -ends, ends)
     return clipped
+
+
+def running(drive_hz: float, samples: int, count: int, *, begun: float = 0.0) -> FloatArray:
+    """The phase at the first sample of touches in a row, while the motor runs on; turns, (count,).
+
+    Examples
+    --------
+    >>> running(175.0, 12, 3).tolist()  # eight samples a turn
+    [0.0, 0.5, 0.0]
+    """
+    return np.asarray((begun + np.arange(count) * samples * drive_hz / RATE_HZ) % 1.0, dtype=float)
 
 
 def record(
@@ -251,12 +266,15 @@ def record(
 def nail_frames(
     finger: Finger, patterns: Sequence[Pattern | None], *, hold_s: float = 2.0, seed: int = 0, scene: Scene | None = None
 ) -> Iterator[Frame]:
-    """Frames without end: the patterns one after the other, each held for `hold_s`, and again from the first on."""
+    """Frames without end: the patterns one after the other, each held for `hold_s`, and again from the first on; the motor runs on."""
     rng = np.random.default_rng(seed)
     stream, samples = nail_stream(scene), round(hold_s * RATE_HZ)
-    k = 0
+    k, begun = 0, np.zeros(1)
     for pattern in itertools.cycle(patterns):
-        for values in readings(finger, [touch(pattern, rng, scene)], rng, samples=samples, scene=scene)[0]:
+        held = touch(pattern, rng, scene)
+        values_of = readings(finger, [held], rng, samples=samples, scene=scene, begun=begun)[0]
+        begun = running(held.drive_hz, samples, 2, begun=begun[0])[1:]
+        for values in values_of:
             time = k / RATE_HZ
             yield Frame(time, time, k, values, np.ones(len(values), dtype=bool), stream.saturated(values))
             k += 1

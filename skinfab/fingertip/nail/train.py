@@ -65,8 +65,9 @@ class Prepared:
     rate_hz: float
     notes: tuple[str, ...]
 
-    def fit(self, rows: IntArray) -> NailModel:
-        """The model of some of the trials."""
+    def fit(self, rows: IntArray, *, across: bool = False) -> NailModel:
+        """The model of some of the trials, as sure as it is right on other trials; with `across` on other participants."""
+        groups = [each.label.participant for each in self.trials] if across else _groups(self.trials)
         return fit_phasors(
             self.names,
             self.classes[rows],
@@ -74,6 +75,7 @@ class Prepared:
             self.noise[rows],
             rate_hz=self.rate_hz,
             drive_hz=float(np.median(self.drive_hz[rows])),
+            groups=[groups[k] for k in rows.tolist()],
         )
 
     def fit_published(self, rows: IntArray) -> HistogramModel:
@@ -95,6 +97,8 @@ class Held:
     right : (n,) bool
     angle_deg, place_mm : (n,) float
         Errors of the regression against the labels; NaN where there is none.
+    confidence : (n,) float
+        NaN without contact, and of the published method, which knows none.
     """
 
     confusion: Confusion
@@ -102,6 +106,7 @@ class Held:
     right: NDArray[np.bool_]
     angle_deg: FloatArray
     place_mm: FloatArray
+    confidence: FloatArray
 
 
 def prepare(trials: Sequence[Trial], *, drive_hz: float | None = None) -> Prepared:
@@ -214,16 +219,16 @@ def judge(made: Prepared, splits: Sequence[Split], *, samples: int | None = WIND
     for train, test in splits:
         if published:
             decided = [_by_histograms(made.fit_published(train), made.trials[k].values) for k in test]
-            estimates = np.full((len(test), 2), np.nan)
+            estimates = np.full((len(test), 3), np.nan)
         else:
-            decided, estimates = _by_phasors(made, train, test, samples)
+            decided, estimates = _by_phasors(made, train, test, samples, across)
         truth += [made.names[made.classes[k]] for k in test]
         said += [made.names[k] for k in decided]
         groups += [made.trials[k].label.participant if across else _groups(made.trials)[k] for k in test]
         errors.append(estimates)
     both = np.concatenate(errors)
     right = np.array([a == b for a, b in zip(truth, said, strict=True)])
-    return Held(Confusion.of(truth, said, made.names), tuple(groups), right, both[:, 0], both[:, 1])
+    return Held(Confusion.of(truth, said, made.names), tuple(groups), right, *both.T)
 
 
 def _whole(values: FloatArray) -> FloatArray:
@@ -237,11 +242,11 @@ def _by_histograms(model: HistogramModel, values: FloatArray) -> int:
     return int(modes(model.decide(values[: count * model.samples].reshape(count, model.samples, 6))[None])[0])
 
 
-def _by_phasors(made: Prepared, train: IntArray, test: IntArray, samples: int | None) -> tuple[list[int], FloatArray]:
-    model = made.fit(train)
+def _by_phasors(made: Prepared, train: IntArray, test: IntArray, samples: int | None, across: bool) -> tuple[list[int], FloatArray]:
+    model = made.fit(train, across=across)
     labels = [made.trials[k].label for k in train]
     regression = Regression(model, learnable(targets_of(labels))[0])
-    decided, errors = [], np.full((len(test), 2), np.nan)
+    decided, errors = [], np.full((len(test), 3), np.nan)
     for row, k in enumerate(test):
         trial = made.trials[k]
         window = np.where(trial.saturated, np.nan, trial.values)[:samples]
@@ -251,9 +256,11 @@ def _by_phasors(made: Prepared, train: IntArray, test: IntArray, samples: int | 
             usable = model.without(gone)
             drive, _ = turned_phasors(window[None], made.rate_hz, made.drive_hz[k], usable.reference)
         own = regression if usable is model else Regression(usable, regression.targets)
-        decided.append(int(usable.decide_phasors(drive, len(window)).classes[0]))
+        decision = usable.decide_phasors(drive, len(window))
+        decided.append(int(decision.classes[0]))
         target = targets_of([trial.label])[0]
         found = own.estimate(usable.features(drive))[0]
         errors[row, 0] = angle_apart(continuous_of(found).angle_deg, continuous_of(target).angle_deg)
         errors[row, 1] = np.linalg.norm(found[2:4] - target[2:4])
+        errors[row, 2] = decision.confidence[0] if decision.contact[0] else np.nan
     return decided, errors

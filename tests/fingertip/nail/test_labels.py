@@ -2,6 +2,7 @@
 
 import contextlib
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -43,6 +44,17 @@ def test_trials_are_where_they_are(table: Path) -> None:
     assert second.rate_hz == pytest.approx(1400) and second.values[0, :3].tolist() == pytest.approx([1.2, 1.1, 1.0])  # in our order
     assert np.isnan(second.values[:, 3:]).all() and np.isnan(second.values[20, 2])
     assert second.saturated[30].tolist() == [False, True, False, False, False, False]
+
+
+def test_a_trial_given_twice_counts_once_also_by_a_copy_of_the_log(table: Path) -> None:
+    labels, _ = read_labels(table)
+    (table.parent / "copy.csv").write_bytes((table.parent / "a.csv").read_bytes())
+    write_labels(table, [*labels, labels[0], replace(labels[1], log="copy.csv")], simulated=True)
+    trials, _, notes = read_trials(table)
+    assert [each.label for each in trials] == labels and notes == ["labels.csv: 2 rows are there twice, and count once"]
+    write_labels(table, [*labels, replace(labels[1], log="copy.csv", part="test")], simulated=True)
+    with pytest.raises(InputError, match=r"a\.csv and copy\.csv \(the same log\) has .* twice, with part '' and 'test'"):
+        read_trials(table)
 
 
 def test_columns_in_any_order_and_of_any_spreadsheet(tmp_path: Path) -> None:

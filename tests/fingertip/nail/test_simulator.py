@@ -20,6 +20,7 @@ from skinfab.fingertip.nail.simulator import (
     phasors,
     readings,
     record,
+    running,
     simulated_nail,
     touch,
 )
@@ -93,6 +94,19 @@ def test_a_motor_that_slows_down_does(finger: Finger) -> None:
     spectra = np.abs(np.fft.rfft(values.reshape(2, 7000) * np.hanning(7000), n=1 << 16))
     first, second = spectra.argmax(axis=1) * RATE_HZ / (1 << 16)
     assert second - first == pytest.approx(-2.0 * 5.0, abs=0.5)
+
+
+def test_a_motor_that_runs_on_keeps_its_phase_from_touch_to_touch(finger: Finger) -> None:
+    rng = np.random.default_rng(0)
+    same = [touch(EDGES4[0], rng, QUIET)] * 3
+    whole = readings(finger, same[:1], rng, samples=300, scene=QUIET, begun=np.array([0.3]))[0]
+    parts = readings(finger, same, rng, samples=100, scene=QUIET, begun=running(same[0].drive_hz, 100, 3, begun=0.3))
+    np.testing.assert_allclose(parts.reshape(300, 6), whole, atol=1e-9)
+    any_phase = readings(finger, same, rng, samples=100, scene=QUIET)
+    assert np.abs(any_phase.reshape(300, 6) - whole).max() > 0.1
+    held = [frame.values for frame in islice(nail_frames(finger, [None], hold_s=0.05, scene=replace(QUIET, drive_hz=169.0)), 210)]
+    alone = readings(finger, [touch(None, rng, QUIET)], rng, samples=210, scene=QUIET, begun=np.zeros(1))[0]
+    np.testing.assert_allclose(held, alone, atol=1e-9)
 
 
 def test_live_frames_are_at_the_sensors_rate_and_go_through_the_patterns(finger: Finger) -> None:
