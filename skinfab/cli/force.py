@@ -32,7 +32,6 @@ BENCHES = {
 #: Topics that have no model, and what there is instead.
 UNTAUGHT = {
     "contact": "the point follows from force and moment; set the friction angle with skinfab force run contact --friction DEG",
-    "gravity": "the centre follows from the poses; use skinfab force run gravity LOG ...",
 }
 
 Verbs = Mapping[str, "argparse._SubParsersAction[argparse.ArgumentParser]"]

@@ -101,6 +101,25 @@ def test_gravity_from_logs_to_a_table(tmp_path: Path, capsys: pytest.CaptureFixt
     assert sorted(p.name for p in (tmp_path / "out").iterdir()) == ["gravity.csv", "gravity.png", "result.json"]
 
 
+def test_a_hand_that_was_weighed_needs_two_poses(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    logs = tmp_path / "logs"
+    made = said(capsys, "simulate", "gravity", "-o", logs, "--poses", "2", "--span", "90", "--weighings", "2", "--seed", "1")["files"]
+    assert len(made) == 16
+    empty = [logs / f"empty-mid-{k}.csv" for k in (1, 2)]
+    learned = said(capsys, "train", "gravity", *empty, "-o", tmp_path / "hand")
+    assert learned["simulated"] and learned["weight_n"] == pytest.approx(0.04 * 9.80665, rel=0.1) and len(learned["made_from"]) == 2
+    left = learned["held_out"]
+    assert left["after"]["force_n"] < left["before"]["force_n"] / 5 and left["after"]["moment_nmm"] < left["before"]["moment_nmm"] / 5
+    assert main(["force", "run", "gravity", str(logs / "mid.csv"), "-o", str(tmp_path / "no")]) == 1
+    assert "there are 2 poses, and 3 are needed" in capsys.readouterr().err
+    model = tmp_path / "hand" / "model.npz"
+    (found,) = said(capsys, "run", "gravity", logs / "mid.csv", "-o", tmp_path / "out", "--model", model)["objects"]
+    assert np.linalg.norm(np.subtract(found["centre_mm"], PAPER_TRUTH[0])) < 3 * found["worst_sd_mm"] + 1.5
+    assert found["mass_kg"] == pytest.approx(0.17, abs=5 * found["mass_sd_kg"])
+    assert main(["force", "run", "gravity", str(empty[0]), "-o", str(tmp_path / "no"), "--model", str(model)]) == 1
+    assert "no more than the empty hand" in capsys.readouterr().err
+
+
 def test_gravity_of_moments_in_n_m_is_refused_unless_their_unit_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     log = hold(seed=1).log
     write_wrench(replace(log, moment=log.moment / 1000), tmp_path / "a.csv")
@@ -147,7 +166,7 @@ def test_a_limit_is_learned_from_empty_cups_and_used(tmp_path: Path, capsys: pyt
     ("arguments", "status", "says"),
     [
         (["run"], 2, "TOPIC"),
-        (["train", "gravity", "a.csv", "-o", "x"], 2, "nothing is to be learned: the centre follows from the poses"),
+        (["train", "gravity", "-o", "x"], 2, "LOG"),
         (["train", "contact"], 2, "skinfab force run contact --friction DEG"),
         (["train", "liquid", "a.csv", "-o", "x", "--false-alarm", "1"], 2, "1 is not below 1"),
         (["train", "liquid", "a.csv", "-o", "x", "--seconds", "2"], 2, "shorter than the 3 s"),

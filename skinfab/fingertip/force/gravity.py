@@ -122,26 +122,26 @@ def published_centre(force: ArrayLike, moment: ArrayLike, covariance: ArrayLike 
     >>> published_centre(F, np.cross([[10.0, 20.0, 150.0]], F)).point.round(6).tolist()
     [10.0, 20.0, 150.0]
     """
-    F, M, S, scaled = _door(force, moment, covariance, least=2)
+    F, M, S, scaled = checked(force, moment, covariance, least=2)
     q, g = lines(F, M)
     across = np.eye(3) - g[:, :, None] * g[:, None, :]
     A = across.sum(axis=0)
-    eigenvalue = _require_regular(A, len(F))
+    eigenvalue = require_regular(A, len(F))
     inverse = np.linalg.inv(A)
     t = inverse @ q.sum(axis=0)
     size = np.linalg.norm(F, axis=1)[:, None, None]
     # q moves with F and M, and so does the line's direction, about which t lies at g . t.
-    by_force = (-_cross(M) - 2 * q[:, :, None] * F[:, None, :]) / size**2 + (
+    by_force = (-cross_matrices(M) - 2 * q[:, :, None] * F[:, None, :]) / size**2 + (
         (g @ t)[:, None, None] * np.eye(3) + g[:, :, None] * t
     ) @ across / size
-    jacobian = np.concatenate([by_force, _cross(F) / size**2], axis=2)
+    jacobian = np.concatenate([by_force, cross_matrices(F) / size**2], axis=2)
     apart = q - np.einsum("nij,j->ni", across, t)
     of_line = np.einsum("nij,njk,nlk->nil", jacobian, S, jacobian)
     # Of a line only the distance to it counts: two numbers a pose, in a plane across it.
     plane = np.linalg.svd(g[:, None, :])[2][:, 1:]
     seen = np.einsum("nij,nj->ni", plane, apart)
     square = np.einsum("ni,nij,nj->", seen, np.linalg.inv(plane @ of_line @ plane.transpose(0, 2, 1)), seen)
-    misfit, chance, factor = _fit(float(square), 2 * len(F) - 3, scaled, freedom)
+    misfit, chance, factor = explained(float(square), 2 * len(F) - 3, scaled, freedom)
     spread = inverse @ of_line.sum(axis=0) @ inverse.T
     return Centre(t, factor * spread, np.zeros(3), eigenvalue, np.linalg.norm(apart, axis=1), misfit, chance)
 
@@ -171,7 +171,7 @@ def centre_of_gravity(force: ArrayLike, moment: ArrayLike, covariance: ArrayLike
     >>> centre_of_gravity(F, M).point.round(6).tolist(), published_centre(F, M).point.round(0).tolist()
     ([10.0, 20.0, 150.0], [6.0, 18.0, 145.0])
     """
-    F, M, S, scaled = _door(force, moment, covariance, least=3)
+    F, M, S, scaled = checked(force, moment, covariance, least=3)
     apart = F - F.mean(axis=0)
     moved = np.einsum("ni,ni->", apart, apart) * np.eye(3) - apart.T @ apart
     values = np.linalg.eigvalsh(moved)
@@ -184,13 +184,15 @@ def centre_of_gravity(force: ArrayLike, moment: ArrayLike, covariance: ArrayLike
     square, information = 0.0, np.eye(6)
     for _ in range(_STEPS):
         t = x[:3]
-        to_residual = np.concatenate([-np.broadcast_to(_cross(t[None]), (len(F), 3, 3)), np.broadcast_to(unit, (len(F), 3, 3))], axis=2)
+        to_residual = np.concatenate(
+            [-np.broadcast_to(cross_matrices(t[None]), (len(F), 3, 3)), np.broadcast_to(unit, (len(F), 3, 3))], axis=2
+        )
         residual = M - np.cross(t, F) - x[3:]
         gain = S @ to_residual.transpose(0, 2, 1)
         weight = np.linalg.inv(to_residual @ gain)
         # The force as it most likely was: linearised about what was read, the point would be drawn towards the origin.
         likely = F - np.einsum("nij,njk,nk->ni", gain, weight, residual)[:, :3]
-        design = np.concatenate([_cross(likely), -np.broadcast_to(unit, (len(F), 3, 3))], axis=2)
+        design = np.concatenate([cross_matrices(likely), -np.broadcast_to(unit, (len(F), 3, 3))], axis=2)
         information = np.einsum("nji,njk,nkl->il", design, weight, design)
         slope = np.einsum("nji,njk,nk->i", design, weight, residual)
         # The moments' part of x is N mm and the point's mm: scaled, so that neither is lost in the other's digits.
@@ -205,7 +207,7 @@ def centre_of_gravity(force: ArrayLike, moment: ArrayLike, covariance: ArrayLike
             break
     else:
         raise _undetermined(F)
-    misfit, chance, factor = _fit(square, 3 * len(F) - 6, scaled, freedom)
+    misfit, chance, factor = explained(square, 3 * len(F) - 6, scaled, freedom)
     scale = 1 / np.sqrt(np.diag(information))
     spread = np.outer(scale, scale) * np.linalg.inv(information * np.outer(scale, scale))
     q, g = lines(F, M - x[3:])
@@ -252,7 +254,7 @@ def _undetermined(F: FloatArray) -> RefusedError:
     )
 
 
-def _door(
+def checked(
     force: ArrayLike, moment: ArrayLike, covariance: ArrayLike | None, *, least: int
 ) -> tuple[FloatArray, FloatArray, FloatArray, bool]:
     """Checked forces, moments, a covariance a pose, and whether its size is unknown."""
@@ -276,7 +278,7 @@ def _door(
     return F, M, np.broadcast_to(given, (len(F), 6, 6)), covariance is None
 
 
-def _fit(square: float, freedom: int, scaled: bool, of_noise: float) -> tuple[float, float, float]:
+def explained(square: float, freedom: int, scaled: bool, of_noise: float) -> tuple[float, float, float]:
     """Misfit, its chance, and what the covariance is multiplied by."""
     wider, left = 1.0, max(of_noise - _SPENT, 1.0)
     if math.isfinite(of_noise):
@@ -304,14 +306,15 @@ def _chi_square(square: float, freedom: int) -> float:
     return float(chi2.sf(square, freedom))
 
 
-def _require_regular(A: FloatArray, n: int) -> float:
+def require_regular(A: FloatArray, n: int) -> float:
+    """The smallest eigenvalue of the sum of n lines' projections, a pose; parallel lines are refused."""
     values = np.linalg.eigvalsh(A)
     if not values[0] > _SINGULAR * values[-1]:
         raise RefusedError(f"gravity comes from one direction in all {n} poses, so their lines are parallel; turn the hand between poses")
     return float(values[0]) / n
 
 
-def _cross(v: FloatArray) -> FloatArray:
+def cross_matrices(v: FloatArray) -> FloatArray:
     """Matrices (n, 3, 3) of v (n, 3) x."""
     out = np.zeros((len(v), 3, 3))
     out[:, 0, 1], out[:, 0, 2], out[:, 1, 2] = -v[:, 2], v[:, 1], -v[:, 0]
