@@ -138,6 +138,8 @@ def train(args: argparse.Namespace) -> int:
     notes = [note for log, poses in read for note in (*log.notes, *poses.notes)]
     model = learn_hand(weighings)
     (before, after) = left_over(weighings) if len(read) > 1 else (None, None)
+    if not model.weight_n:
+        notes.append("no weight was felt to turn with the hand; if its fingertips have one, it was not turned far enough to weigh it")
     if after is None:
         notes.append("one weighing does not show how far the offsets drift; weigh the hand again at another time, and give both logs")
     made_from = [{"file": log.name, "sha256": log.sha256, "simulated": log.simulated, "poses": len(p.samples)} for log, p in read]

@@ -284,7 +284,8 @@ def _start(weighings: Sequence[Poses], of: NDArray[np.int64], read: FloatArray) 
     spheres = []
     for each in weighings:
         try:
-            spheres.append(fit_mass(each.force, None if each.covariance is None else each.covariance[:, :3, :3]))
+            of_force = None if each.covariance is None else each.covariance[:, :3, :3]
+            spheres.append(fit_mass(each.force, of_force, worst_part=_WORST_PART))
         except (InputError, RefusedError):
             continue
     if not spheres:

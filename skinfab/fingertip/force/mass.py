@@ -13,7 +13,7 @@ from skinfab.fingertip.force.wrench import SensorNoise
 
 FloatArray = NDArray[np.float64]
 
-#: The sphere is none where its radius is known no better than to this part of itself.
+#: A mass is none that is known no better than to this part of itself.
 _WORST_PART = 0.2
 _STEPS, _SETTLED = 100, 1e-12
 
@@ -34,7 +34,7 @@ class Mass:
     offset_n: FloatArray
 
 
-def fit_mass(force: ArrayLike, covariance: ArrayLike | None = None) -> Mass:
+def fit_mass(force: ArrayLike, covariance: ArrayLike | None = None, *, worst_part: float = _WORST_PART) -> Mass:
     """Fit a sphere to the forces of poses, by least squares of their distances from it.
 
     Parameters
@@ -43,13 +43,15 @@ def fit_mass(force: ArrayLike, covariance: ArrayLike | None = None) -> Mass:
         A row a pose, from 4.
     covariance : (3, 3) or (n, 3, 3) float, N^2, optional
         Of a pose's force; that of `SensorNoise` where left out.
+    worst_part : float
+        The sphere is none where its radius is known no better than to this part of itself.
 
     Raises
     ------
     InputError
         Fewer than four poses, or shapes that do not fit.
     RefusedError
-        The directions lie in one plane or so, so that the sphere's size is not known to a fifth.
+        The directions lie in one plane or so, so that the sphere's size is not known so well.
 
     Examples
     --------
@@ -84,6 +86,6 @@ def fit_mass(force: ArrayLike, covariance: ArrayLike | None = None) -> Mass:
             break
     with np.errstate(invalid="ignore"):
         sd = float(np.sqrt(np.linalg.pinv(information, hermitian=True)[3, 3])) if np.linalg.matrix_rank(information) == 4 else np.inf
-    if not sd <= _WORST_PART * x[3]:
+    if not sd <= worst_part * x[3]:
         raise flat
     return Mass(float(x[3]) / GRAVITY, sd / GRAVITY, x[:3].copy())
