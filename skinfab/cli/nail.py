@@ -8,7 +8,7 @@ import importlib
 #: Sub-command and what it is for; `skinfab/cli/nail_NAME.py` holds it.
 STEPS = {
     "simulate": "logs with labels of simulated participants",
-    "train": "learn from logs with labels, and say how good it is on those that were held out",
+    "train": "learn one person's finger from logs with labels, and say how good it is on those that were held out",
     "run": "what is touched, in a log or as a port sends it",
     "bench": "the published method beside the improved one, on simulated participants",
 }

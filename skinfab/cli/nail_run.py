@@ -150,6 +150,12 @@ def _judged(path: Path, log: Log, told: Sequence[Told], samples: int, content: A
     fresh = [each for each in own if not any(each.start_s < end and start < each.end_s for start, end in spans)]
     if learned is None:
         notes.append("the model does not say which trials it learned from; where they are among these, more is right than of new ones")
+    strangers = {each.participant for each in own if each.participant} - set(known := _participants(content))
+    if strangers and known:
+        notes.append(
+            f"the trials are of {', '.join(sorted(strangers))} and the model learned from {', '.join(known)}: fingers differ, and "
+            "another's is often told wrong; train a model for each person"
+        )
     if left_out := len(own) - len(fresh):
         notes.append(f"the model learned from {left_out} of the {len(own)} trials, which are not counted")
     rate_hz = content.model.rate_hz
@@ -200,10 +206,11 @@ def _facts(args: argparse.Namespace, content: Any, told: Sequence[Told], facts: 
         notes.append(f"{left_out:.1%} of the readings are missing or saturated and were left out")
     if (off := sum(each.turning is False for each in told) / len(told)) > 0:
         notes.append(f"the motor did not turn in {off:.1%} of the windows, which were not decided")
+    whose = f", here of {', '.join(known)}" if (known := _participants(content)) else ""
     if (strange := sum(each.strange for each in decisions) / len(decisions)) > 0.2:
         notes.append(
-            f"{strange:.0%} of the windows are like nothing the model learned from; is it the same finger, the sensor where it was, "
-            "and all in the same units?"
+            f"{strange:.0%} of the windows are like nothing that was learned; is it the same finger (a model is one person's{whose}), "
+            "the sensor where it was, and all in the same units?"
         )
     if (latency := facts.get("latency_ms")) and latency["median"] > 1000 * _BEHIND_S:
         notes.append(
@@ -216,22 +223,28 @@ def _facts(args: argparse.Namespace, content: Any, told: Sequence[Told], facts: 
             f"{args.model.name} was learned from simulated readings: what it says of measured ones is marked as simulated, and worth little"
         )
     drives = np.array([each.drive_hz for each in told if each.decision is not None and not each.decision.strange])
-    known = drives[np.isfinite(drives)]
+    found = drives[np.isfinite(drives)]
     return {
         **facts,
         "simulated": bool(facts["simulated"] or content.made_from.get("simulated")),
         "model": args.model.name,
+        "participants": _participants(content),
         "window_s": facts["window_readings"] / content.model.rate_hz,
         "windows": len(told),
         "undecided": len(told) - len(decisions),
         "touched": dict(Counter(each.label for each in decisions).most_common()),
-        "drive_hz": dict(zip(("low", "median", "high"), np.quantile(known, [0.05, 0.5, 0.95]).tolist(), strict=True))
-        if len(known)
+        "drive_hz": dict(zip(("low", "median", "high"), np.quantile(found, [0.05, 0.5, 0.95]).tolist(), strict=True))
+        if len(found)
         else None,
         "strange": strange,
         "left_out": left_out,
         "notes": notes,
     }
+
+
+def _participants(content: Any) -> list[str]:
+    """Whose finger was learned, as far as somebody said."""
+    return [str(each) for each in content.made_from.get("participants") or [] if each]
 
 
 def _write(output: Path, told: Sequence[Told], names: list[str], result: dict[str, Any]) -> None:

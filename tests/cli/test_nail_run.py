@@ -50,6 +50,8 @@ def test_train(logs: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], m
     rate = held["whole trials"]["accuracy"]
     assert 0.4 < rate["value"] and rate["low"] < rate["value"] <= rate["high"]
     assert ("33 readings" in held) == (method == "improved")
+    sure = held["whole trials"]["confidence"]
+    assert sure is None if method == "published" else 0.4 < sure["mean"] <= 1 and 0.4 < sure["right"] <= 1
     if method == "published":  # its window is what it learned from
         log = str(logs / "participant-1.csv")
         assert main(["nail", "run", str(tmp_path / "m.npz"), log, "--window", "33", "-o", str(tmp_path / "o")]) == 2
@@ -63,6 +65,24 @@ def test_train_says_it_in_words(logs: Path, tmp_path: Path, capsys: pytest.Captu
     assert "improved (simulated): 80 trials of 1, 2" in said.out and "held out by participant" in said.out and "% right [" in said.out
     assert "forces from" in said.err and "too much alike" in said.err
     assert "where a finger was aimed at, not where it came to lie" in said.out
+    assert "of the contacts are right" in said.out and "train a model for each person" not in said.out  # these are two persons'
+
+
+def test_one_persons_model_is_told_as_such(logs: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    model, table = str(tmp_path / "m.npz"), logs / "labels.csv"
+    rows = table.read_text().splitlines()
+    own = [row for row in rows if row.startswith("participant-1.csv")]
+    (logs / "own.csv").write_text("\n".join([*rows[:2], *own, *own[:3]]) + "\n")  # three of them twice
+    assert main(["nail", "train", str(logs / "own.csv"), "-o", model]) == 0
+    said = capsys.readouterr()
+    assert "28 trials of 1" in said.out and "train a model for each person" in said.out
+    assert "note: own.csv: 3 rows are there twice, and count once" in said.err
+    other = [str(logs / "participant-2.csv"), "--labels", str(table), "--every", "64", "-o", str(tmp_path / "o")]
+    main(["nail", "run", model, *other, "--json"])
+    found = json.loads(capsys.readouterr().out)
+    assert found["participants"] == ["1"] and found["labels"]["trials"] == 40
+    assert any("the trials are of 2 and the model learned from 1: fingers differ" in note for note in found["notes"])
+    assert any("a model is one person's, here of 1" in note for note in found["notes"])
 
 
 def test_run_on_a_log(logs: Path, model: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

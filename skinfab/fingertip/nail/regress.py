@@ -30,6 +30,8 @@ REACH = 10.0
 RIDGE = 0.05
 #: Forces that span less cannot be told from the scatter of placing.
 LEAST_SPAN = 1.5
+#: Directions (as cosine and sine) and feet (mm) that differ by less are one: rounding of what a table says.
+_ALIKE = 1e-6
 
 
 @dataclass(frozen=True)
@@ -154,9 +156,17 @@ def by_probability(model: NailModel, targets: FloatArray, probability: FloatArra
 def learnable(targets: FloatArray) -> tuple[FloatArray, list[str]]:
     """Targets without what cannot be learned from them, and why not, a sentence each.
 
-    Forces that span less than a factor `LEAST_SPAN` are left out.
+    Directions or feet that are all one are left out, and forces that span less than a factor `LEAST_SPAN`.
     """
     kept, notes = targets.copy(), []
+    for columns, what, differ in (
+        ([0, 1], "edges lie in one direction", "turned otherwise"),
+        ([2, 3], "patterns have their foot at one place", "to the side"),
+    ):
+        known = targets[np.isfinite(targets[:, columns]).all(axis=1)][:, columns]
+        if len(known) and np.ptp(known, axis=0).max() < _ALIKE:
+            kept[:, columns] = np.nan
+            notes.append(f"all {what}, and no other can be learned from them; touch some {differ} too")
     force = targets[np.isfinite(targets[:, 4]), 4]
     if len(force) and np.ptp(force) < math.log(LEAST_SPAN):
         kept[:, 4] = np.nan

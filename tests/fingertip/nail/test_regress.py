@@ -72,6 +72,16 @@ def test_forces_that_are_alike_are_not_learned() -> None:
     assert np.isnan(kept[:, 4]).all() and "forces from 0.9 to 1.2 N are too much alike" in notes[0]
 
 
+def test_what_never_differs_is_not_learned() -> None:
+    star = targets_of([Label("a", 0, 1, "x", x_mm=0.0, y_mm=0.0, angle_deg=angle) for angle in (0.0, 45.0, 90.0)])
+    kept, notes = learnable(star)
+    assert np.isnan(kept[:, 2:4]).all() and np.array_equal(kept[:, :2], star[:, :2])
+    assert notes == ["all patterns have their foot at one place, and no other can be learned from them; touch some to the side too"]
+    rows = targets_of([Label("a", 0, 1, "x", x_mm=0.0, y_mm=y, angle_deg=180.0 * (y > 0)) for y in (-7.5, 0.0, 7.5)])
+    kept, notes = learnable(rows)
+    assert np.isnan(kept[:, :2]).all() and np.array_equal(kept[:, 2:4], rows[:, 2:4]) and "one direction" in notes[0]
+
+
 @given(st.floats(-20, 20), st.floats(-20, 20), st.floats(0, 180), st.floats(-30, 30))
 def test_a_foot_is_the_same_along_the_edge(x: float, y: float, angle: float, along: float) -> None:
     here = foot(x, y, angle)
