@@ -10,6 +10,7 @@ import itertools
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -50,6 +51,11 @@ class Curves:
 
     def __len__(self) -> int:
         return len(self.p0)
+
+    @cached_property
+    def box(self) -> tuple[float, float, float, float]:
+        """Round all of them: left, low, right, high, mm."""
+        return (*self.low.min(axis=0).tolist(), *self.high.max(axis=0).tolist())
 
     @staticmethod
     def of_segments(segments: Sequence[Segment]) -> Curves:
@@ -118,7 +124,10 @@ def distance_within(one: Curves, two: Curves, reach: float) -> float:
     """
     if not len(one) or not len(two):
         return math.inf
-    one = one.within(two.low.min(axis=0) - reach, two.high.max(axis=0) + reach)
+    (left, low, right, high), (two_left, two_low, two_right, two_high) = one.box, two.box
+    if left > two_right + reach or right < two_left - reach or low > two_high + reach or high < two_low - reach:
+        return math.inf
+    one = one.within(np.array([two_left - reach, two_low - reach]), np.array([two_right + reach, two_high + reach]))
     if not len(one):
         return math.inf
     two = two.within(one.low.min(axis=0) - reach, one.high.max(axis=0) + reach)
