@@ -29,11 +29,6 @@ BENCHES = {
     "gravity": "skinfab.bench.gravity",
 }
 
-#: Topics that have no model, and what there is instead.
-UNTAUGHT = {
-    "contact": "the point follows from force and moment; set the friction angle with skinfab force run contact --friction DEG",
-}
-
 Verbs = Mapping[str, "argparse._SubParsersAction[argparse.ArgumentParser]"]
 
 
@@ -53,8 +48,6 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
             _add_bench(q)
         else:
             topics[verb] = q.add_subparsers(metavar="TOPIC", required=True, title="topics")
-    for topic, remedy in UNTAUGHT.items():
-        _add_untaught(topics["train"], topic, remedy)
     for topic in TOPICS:
         importlib.import_module(f"skinfab.cli.force_{topic}").add_parsers(topics)
 
@@ -68,15 +61,6 @@ def add_output(p: argparse.ArgumentParser, what: str) -> None:
 def finish(p: argparse.ArgumentParser, run: object) -> None:
     """What the command line needs to know of a topic's parser."""
     p.set_defaults(run=run, wrong_usage=p.error, parser=p)
-
-
-def _add_untaught(topics: argparse._SubParsersAction[argparse.ArgumentParser], topic: str, remedy: str) -> None:
-    """A topic whose `train` says that there is nothing to be learned, whatever it is given."""
-    p = topics.add_parser(topic, help="nothing is to be learned")
-    p.add_argument("logs", metavar="LOG", nargs="*", type=Path, help="not read")
-    p.add_argument("-o", "--output", metavar="DIR", type=Path, help="not written")
-    p.add_argument("--json", action="store_true", help="not written")
-    finish(p, lambda args: args.wrong_usage(f"nothing is to be learned: {remedy}"))
 
 
 def _add_bench(p: argparse.ArgumentParser) -> None:

@@ -1,4 +1,4 @@
-"""`skinfab force simulate|run contact`: where a fingertip is touched, and whether what it holds slides, leaves or rolls."""
+"""`skinfab force simulate|train|run contact`: where a fingertip is touched, and whether what it holds slides, leaves or rolls."""
 
 from __future__ import annotations
 
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from skinfab.fingertip.force.contact_mesh import TipMesh
     from skinfab.fingertip.force.logs import WrenchLog
     from skinfab.fingertip.force.motion import Motion
+    from skinfab.fingertip.force.touch_model import TouchModel
 
 _FILES = ("contacts.csv", "events.csv", "contact.png", "result.json")
 _HEAD = ("log", "time_s", "x_mm", "y_mm", "z_mm", "nx", "ny", "nz", "force_n", "inclination_deg", "torsion_nmm", "miss_mm", "sd_mm")
@@ -30,14 +31,25 @@ _TRUTH = "truth.csv"
 def add_parsers(topics: Mapping[str, argparse._SubParsersAction[argparse.ArgumentParser]]) -> None:
     """Add the topic to its verbs."""
     from skinfab.cli.force import add_output, finish
+    from skinfab.cli.force_touch import add_train
 
+    fingertip = argparse.ArgumentParser(add_help=False)
+    fingertip.add_argument(
+        "--radius", metavar="MM", type=steps.positive, help="of the fingertip's dome about the sensor's origin (default: 20)"
+    )
+    fingertip.add_argument(
+        "--tip", metavar="MESH", type=Path, help="instead of a dome: a closed mesh of the fingertip in the sensor's frame, mm"
+    )
     p = topics["simulate"].add_parser("contact", help="grasps that slide, let go and roll, and the times when they do")
     p.add_argument("--grasps", metavar="N", type=repeats, default=6, help="logs, a grasp each (default: 6)")
+    p.add_argument("--touches", metavar="N", type=repeats, help="instead of grasps: logs of a touch each at known places, for train")
     p.add_argument("--seed", type=steps.seed, default=0, help="of all chance (default: 0)")
-    add_output(p, "a log a grasp, and truth.csv")
+    add_output(p, "a log a grasp, and truth.csv; or a log a touch, and places.csv")
     finish(p, simulate)
 
-    p = topics["run"].add_parser("contact", help="contact points, and sliding, separation and rolling as events")
+    add_train(topics["train"], fingertip=fingertip)
+
+    p = topics["run"].add_parser("contact", help="contact points, and sliding, separation and rolling as events", parents=[fingertip])
     p.add_argument("logs", metavar="LOG", nargs="*", type=Path, help="columns time, Fx, Fy, Fz (N), Mx, My, Mz (N mm)")
     p.add_argument("--port", metavar="PORT", help="instead of logs: a port such as /dev/ttyACM0, told as it comes, until Ctrl-C")
     p.add_argument("--seconds", metavar="S", type=steps.positive, help="of a port: end after so long")
@@ -48,8 +60,7 @@ def add_parsers(topics: Mapping[str, argparse._SubParsersAction[argparse.Argumen
     p.add_argument(
         "--tare", metavar="S", type=steps.not_negative, default=0.5, help="untouched at the beginning, taken off (default: 0.5; 0: none)"
     )
-    p.add_argument("--radius", metavar="MM", type=steps.positive, help="of the fingertip's dome about the sensor's origin (default: 20)")
-    p.add_argument("--tip", metavar="MESH", type=Path, help="instead of a dome: a closed mesh of the fingertip in the sensor's frame, mm")
+    p.add_argument("--model", metavar="FILE", type=Path, help="model.npz of train: how this sensor is mounted, and its noise")
     p.add_argument("--least-force", metavar="N", type=steps.not_negative, help="what is weaker is no contact (default: 0.3)")
     p.add_argument("--truth", metavar="FILE", type=Path, help="CSV of log,kind,start_s,end_s: how well the events are found is told too")
     add_output(p, "contacts, events, figure and result")
@@ -78,7 +89,11 @@ def surface_of(args: argparse.Namespace) -> Hemisphere | TipMesh:
 
 
 def simulate(args: argparse.Namespace) -> int:
-    """Write a log a grasp, and what is true of them."""
+    """Write a log a grasp, and what is true of them; or touches at known places."""
+    if args.touches:
+        from skinfab.cli.force_touch import simulate as simulate_touches
+
+        return simulate_touches(args)
     from skinfab.fingertip.force.logs import write_wrench
     from skinfab.fingertip.force.motion_file import events_csv
     from skinfab.fingertip.force.motion_simulator import GraspScene, grasp_log
@@ -111,19 +126,27 @@ def run(args: argparse.Namespace) -> int:
     from skinfab.files import require_apart
     from skinfab.fingertip.force.contact import LEAST_FORCE_N, locate
     from skinfab.fingertip.force.motion_file import read_events
+    from skinfab.fingertip.force.touch_model import load_touches
 
-    require_apart(args.output, _FILES, [*args.logs, *([args.truth] if args.truth else []), *([args.tip] if args.tip else [])])
+    require_apart(args.output, _FILES, [*args.logs, *(path for path in (args.truth, args.tip, args.model) if path)])
+    model, simulated_model = load_touches(args.model) if args.model else (None, False)
     surface, least = surface_of(args), LEAST_FORCE_N if args.least_force is None else args.least_force
+    if model:
+        model.require_surface(surface)
     truth = read_events(args.truth) if args.truth else {}
     latency: dict[str, float] = {}
     if args.port is not None:
-        logs, events, latency = _watched(args, surface, least)
+        logs, events, latency = _watched(args, surface, least, model)
     else:
-        logs, events = _logged(args, surface, least)
-    found = [(locate(log.force, log.moment, surface, least_force=least), each) for log, each in zip(logs, events, strict=True)]
+        logs, events = _logged(args, surface, least, model)
+    noise = model.noise if model else None
+    found = [(locate(log.force, log.moment, surface, least_force=least, noise=noise), e) for log, e in zip(logs, events, strict=True)]
     if args.truth and (missing := next((log.name for log in logs if log.name not in truth), None)):
         raise InputError(f"{args.truth} has no event of {missing}; name the logs there as their files")
-    result = _facts(args, logs, found, truth) | ({"latency": latency} if latency else {})
+    result = _facts(args, logs, found, truth) | ({"latency": latency} if latency else {}) | {"learned": model is not None}
+    if simulated_model and not result["simulated"]:
+        result["simulated"] = True
+        result["notes"].append("the model was learned from simulated touches; what it makes of a real sensor is not to be relied on")
     _write(args, logs, found, truth, result)
     if args.json:
         print(json.dumps(result, allow_nan=False))
@@ -146,7 +169,9 @@ def _require_usage(args: argparse.Namespace) -> None:
         args.wrong_usage("--truth is for logs")
 
 
-def _logged(args: argparse.Namespace, surface: Hemisphere | TipMesh, least: float) -> tuple[list[WrenchLog], list[list[Motion]]]:
+def _logged(
+    args: argparse.Namespace, surface: Hemisphere | TipMesh, least: float, model: TouchModel | None
+) -> tuple[list[WrenchLog], list[list[Motion]]]:
     """Logs without the sensor's offset, and the events of each."""
     import numpy as np
 
@@ -169,8 +194,10 @@ def _logged(args: argparse.Namespace, surface: Hemisphere | TipMesh, least: floa
                 raise InputError(f"{path} has a single row; that is no log of a motion")
             log = tared(log, seconds=args.tare) if args.tare else log
             if not log.units_said:
-                require_nmm(log.force, log.moment, reach_mm=_reach(surface), least_force=least, where=log.name)
-            watch = MotionWatch(Limits(args.friction), rate_hz=log.rate_hz, surface=surface, least_force=least)
+                require_nmm(log.force, log.moment, reach_mm=reach(surface), least_force=least, where=log.name)
+            log = model.corrected(log) if model else log
+            noise = model.noise if model else None
+            watch = MotionWatch(Limits(args.friction), rate_hz=log.rate_hz, surface=surface, least_force=least, noise=noise)
             if late := int((np.diff(log.time) <= 0).sum()):
                 said = f"{log.name}: the time does not go on at {late} samples; motions were looked for in those that come in order"
                 log = replace(log, notes=(*log.notes, said))
@@ -180,7 +207,7 @@ def _logged(args: argparse.Namespace, surface: Hemisphere | TipMesh, least: floa
     return logs, events
 
 
-def _reach(surface: Hemisphere | TipMesh) -> float:
+def reach(surface: Hemisphere | TipMesh) -> float:
     """How far from the sensor's origin a contact can be, mm, about."""
     from skinfab.fingertip.force.contact_mesh import TipMesh
 
@@ -188,7 +215,7 @@ def _reach(surface: Hemisphere | TipMesh) -> float:
 
 
 def _watched(
-    args: argparse.Namespace, surface: Hemisphere | TipMesh, least: float
+    args: argparse.Namespace, surface: Hemisphere | TipMesh, least: float, model: TouchModel | None
 ) -> tuple[list[WrenchLog], list[list[Motion]], dict[str, float]]:
     """What a port sent, its events, and how long decisions took."""
     from skinfab.cli.force_port import watch_port
@@ -202,6 +229,7 @@ def _watched(
         least_force=least,
         surface=surface,
         tare=args.tare,
+        model=model,
         quiet=args.json,
     )
     return [replace(live.log, notes=live.notes)], [list(live.motions)], live.latency

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from skinfab.fingertip.force.contact_mesh import TipMesh
     from skinfab.fingertip.force.logs import WrenchLog
     from skinfab.fingertip.force.motion import Limits, Motion
+    from skinfab.fingertip.force.touch_model import TouchModel
     from skinfab.readout.frame import Stream
 
 #: How long to wait for a frame before looking whether time is up, s.
@@ -25,6 +26,8 @@ _WAIT_S = 0.2
 #: A contact that lasts is told again this often, s.
 _AGAIN_S = 1.0
 _MS = 1e3
+#: Samples with a force after which units are looked at.
+_LOOKED_AT = 20
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,6 +73,7 @@ def watch_port(
     least_force: float | None = None,
     surface: Hemisphere | TipMesh | None = None,
     tare: float = 0.0,
+    model: TouchModel | None = None,
     quiet: bool = False,
 ) -> Watched:
     """Watch a port until Ctrl-C, or for a while, and tell contacts and motions as they come.
@@ -87,6 +91,8 @@ def watch_port(
         The fingertip.
     tare : float, s
         For so long nothing touches the finger: what it reads then is its offset, and is taken off all that follows.
+    model : TouchModel, optional
+        How the sensor is mounted, and its noise.
     quiet : bool
         Tell nothing.
 
@@ -94,7 +100,7 @@ def watch_port(
     ------
     InputError
         The port cannot be opened, sends nothing, does not send the six components, does not say how many samples come a second,
-        or something touched the finger while it was to rest.
+        does not name the unit of its moments, which are in N m, or something touched the finger while it was to rest.
     """
     import numpy as np
 
@@ -112,12 +118,14 @@ def watch_port(
     locate(np.array([[0.0, 0.0, -1.0]]), np.zeros((1, 3)), surface)
     with SerialPort(port, baud=baud or BAUD) as source:
         stream = source.stream
-        columns, scale = _columns(stream, port)
+        columns, scale, said = _columns(stream, port)
         if not stream.rate_hz:
             raise InputError(f"{port} does not say how many samples come a second; let the device describe its stream (docs/readout.md)")
         least = LEAST_FORCE_N if least_force is None else least_force
-        watch = MotionWatch(limits, rate_hz=stream.rate_hz, surface=surface, least_force=least)
+        noise = model.noise if model else None
+        watch = MotionWatch(limits, rate_hz=stream.rate_hz, surface=surface, least_force=least, noise=noise)
         teller, rest = _Teller(least, surface, quiet), _Rest(stream.name, tare)
+        units = None if said else _Units(port, watch.surface, least)
         clock, end = HostClock(), time.monotonic() + (seconds or math.inf)
         missing, began = 0, clock.now()
         try:
@@ -131,6 +139,9 @@ def watch_port(
                 wrench = rest.less(frame.device_time, scale * frame.values[columns])
                 if wrench is None:
                     continue
+                if units:
+                    units.look(wrench)
+                wrench = model.matrix @ wrench if model else wrench
                 new = watch.step(frame.device_time, wrench[:3], wrench[3:])
                 if frame.host_time >= began:
                     latency.append(clock.now() - frame.host_time)
@@ -185,14 +196,39 @@ class _Rest:
         return mean
 
 
-def _columns(stream: Stream, port: str) -> tuple[list[int], NDArray[np.float64]]:
-    """Where the six components are, and what makes them N and N mm."""
+class _Units:
+    """Looks whether moments whose unit nobody named are in N m: once, when so many samples with a force have come."""
+
+    def __init__(self, port: str, surface: Hemisphere | TipMesh, least_force: float) -> None:
+        from skinfab.cli.force_contact import reach
+
+        self._port, self._reach, self._least = port, reach(surface), least_force
+        self._rows: list[NDArray[np.float64]] | None = []
+
+    def look(self, wrench: NDArray[np.float64]) -> None:
+        """Raises InputError."""
+        if self._rows is None or float(wrench[:3] @ wrench[:3]) <= self._least**2:
+            return
+        self._rows.append(wrench)
+        if len(self._rows) < _LOOKED_AT:
+            return
+        import numpy as np
+
+        from skinfab.fingertip.force.wrench import require_nmm
+
+        table, self._rows = np.array(self._rows), None
+        require_nmm(table[:, :3], table[:, 3:], reach_mm=self._reach, least_force=self._least, where=self._port)
+
+
+def _columns(stream: Stream, port: str) -> tuple[list[int], NDArray[np.float64], bool]:
+    """Where the six components are, what makes them N and N mm, and whether the unit of the moments is named."""
     import numpy as np
 
     from skinfab.fingertip.force.wrench import wrench_columns
 
-    used = wrench_columns(stream.names, {each.name: each.unit for each in stream.channels}, where=port)
-    return [stream.index(name) for name, _ in used], np.array([scale for _, scale in used])
+    units = {each.name: each.unit for each in stream.channels}
+    used = wrench_columns(stream.names, units, where=port)
+    return [stream.index(name) for name, _ in used], np.array([scale for _, scale in used]), all(units[name] for name, _ in used[3:])
 
 
 class _Teller:

@@ -167,7 +167,7 @@ def test_a_limit_is_learned_from_empty_cups_and_used(tmp_path: Path, capsys: pyt
     [
         (["run"], 2, "TOPIC"),
         (["train", "gravity", "-o", "x"], 2, "LOG"),
-        (["train", "contact"], 2, "skinfab force run contact --friction DEG"),
+        (["train", "contact", "a.csv", "-o", "x"], 2, "--places"),
         (["train", "liquid", "a.csv", "-o", "x", "--false-alarm", "1"], 2, "1 is not below 1"),
         (["train", "liquid", "a.csv", "-o", "x", "--seconds", "2"], 2, "shorter than the 3 s"),
         (["run", "texture", "a.csv", "-o", "x"], 2, "--model"),

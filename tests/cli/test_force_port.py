@@ -10,7 +10,8 @@ from skinfab.cli.force_port import watch_port
 from skinfab.errors import InputError
 from skinfab.fingertip.force.motion import Limits, MotionWatch, find_motions
 from skinfab.fingertip.force.motion_simulator import grasp_log
-from skinfab.fingertip.force.wrench import force_stream
+from skinfab.fingertip.force.touch_model import TouchModel
+from skinfab.fingertip.force.wrench import SensorNoise, force_stream
 from skinfab.readout.frame import Channel, Recording, Stream
 from skinfab.readout.packets import FRAME_64
 from skinfab.readout.pty_server import PtyServer
@@ -111,3 +112,22 @@ def test_a_touch_while_it_is_to_rest_is_refused() -> None:
     made = recording(3.0)
     with PtyServer(made.stream, made, rate_hz=0) as device, pytest.raises(InputError, match="something touches"):
         watch_port(str(device.path), limits=LIMITS, seconds=2, tare=2.0, quiet=True)
+
+
+def test_moments_in_n_m_whose_unit_no_device_names_are_refused() -> None:
+    made = recording(4.0)
+    channels = tuple(replace(each, unit="") for each in made.stream.channels)
+    values = made.values * np.array([1, 1, 1, 1e-3, 1e-3, 1e-3])
+    with (
+        PtyServer(replace(made.stream, channels=channels), replace(made, values=values), rate_hz=0, kind=FRAME_64) as device,
+        pytest.raises(InputError, match="so the moments are in N m"),
+    ):
+        watch_port(str(device.path), limits=LIMITS, seconds=2, quiet=True)
+
+
+def test_a_model_straightens_what_a_port_sends() -> None:
+    made = recording(1.0)
+    twice = TouchModel(2 * np.eye(6), SensorNoise(), "a dome of 20 mm")
+    with PtyServer(made.stream, made, rate_hz=0, kind=FRAME_64) as device:
+        watched = watch_port(str(device.path), limits=LIMITS, seconds=1, model=twice, quiet=True)
+    assert watched.log.moment == pytest.approx(2 * made.values[:, 3:])

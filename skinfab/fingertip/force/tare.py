@@ -34,7 +34,10 @@ def tared(log: WrenchLog, *, seconds: float, noise: SensorNoise | None = None) -
     rest = log.time < log.time[0] + seconds
     count = int(rest.sum())
     if count < LEAST_SAMPLES:
-        raise InputError(f"{log.name}: {count} samples in the first {seconds:g} s are too few for the sensor's offset; rest longer")
+        raise InputError(
+            f"{log.name}: {count} sample{'s' * (count != 1)} in the first {seconds:g} s are too few for the sensor's offset; rest "
+            "longer, or give --tare 0 where it is off already"
+        )
     for name, readings, sd in (("force", log.force[rest], noise.force_n), ("moment", log.moment[rest], noise.moment_nmm)):
         half = count // 2
         step = np.abs(readings[:half].mean(axis=0) - readings[half:].mean(axis=0)).max()

@@ -88,11 +88,11 @@ def test_offsets_that_drift_are_seen_from_weighing_to_weighing() -> None:
 def test_what_tells_nothing() -> None:
     with pytest.raises(InputError, match="no weighing"):
         learn_hand([])
+    angle = np.linspace(-0.7, 0.7, 8)  # turned about one axis only
+    g = np.column_stack([np.sin(angle), np.zeros(8), -np.cos(angle)])
+    flat = replace(exact(8), force=OFFSET[:3] + WEIGHT * g, moment=OFFSET[3:] + np.cross(MOMENT, g))
     with pytest.raises(RefusedError, match="six poses or more"):
-        angle = np.linspace(-0.7, 0.7, 8)  # turned about one axis only
-        g = np.column_stack([np.sin(angle), np.zeros(8), -np.cos(angle)])
-        flat = exact(8)
-        learn_hand([replace(flat, force=OFFSET[:3] + WEIGHT * g, moment=OFFSET[3:] + np.cross(MOMENT, g))])
+        learn_hand([flat])
     model = learn_hand([exact(8)])
     with pytest.raises(InputError, match=r"pose 1 feels 0\.4 N, no more than the empty hand"):
         centre_with(model, exact(4, seed=3))
