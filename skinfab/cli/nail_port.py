@@ -44,6 +44,7 @@ def watch_port(
     """
     from skinfab.cli.record import outage_notes, outages
     from skinfab.fingertip.nail.live import NailWatch
+    from skinfab.fingertip.nail.units import absent
     from skinfab.readout.serial_port import BAUD, SerialPort
     from skinfab.readout.source import HostClock
 
@@ -82,7 +83,7 @@ def watch_port(
             "window_readings": watch.samples,
             "latency_ms": latency_facts(latency),
             "outages": gone,
-            "notes": [*outage_notes(port, gone), *[f"{counts.bad} packets were damaged"] * bool(counts.bad)],
+            "notes": [*absent(source.stream), *outage_notes(port, gone), *[f"{counts.bad} packets were damaged"] * bool(counts.bad)],
         }
     return told, facts
 

@@ -104,7 +104,7 @@ def run(args: argparse.Namespace) -> int:
 
 def _from_log(args: argparse.Namespace, content: Any) -> tuple[list[Told], dict[str, Any]]:
     from skinfab.fingertip.nail.live import decide_log
-    from skinfab.fingertip.nail.units import units_said
+    from skinfab.fingertip.nail.units import absent, units_said
     from skinfab.readout.checks import check_times
     from skinfab.readout.logs.log import read_log
 
@@ -118,7 +118,7 @@ def _from_log(args: argparse.Namespace, content: Any) -> tuple[list[Told], dict[
         "frames": len(log.recording),
         "lost": lost,
         "window_readings": samples,
-        "notes": [*log.notes, *(f"{log.file}: {wrong}" for wrong in check_times(log.recording))],
+        "notes": [*log.notes, *(f"{log.file}: {wrong}" for wrong in check_times(log.recording)), *absent(log.recording.stream)],
     }
     said = content.made_from.get("units_said")
     if said is not None and said != units_said(log.recording.stream):
@@ -199,7 +199,7 @@ def _facts(args: argparse.Namespace, content: Any, told: Sequence[Told], facts: 
     if missing := max(each.missing for each in decisions):
         part = sum(each.missing > 0 for each in decisions) / len(decisions)
         notes.append(
-            f"up to {missing} of the six channels had too few readings, in {part:.1%} of the windows, which were decided without them"
+            f"up to {missing} of the six channels had too few readings or stood still, in {part:.1%} of the windows, decided without them"
         )
     left_out = float(np.mean([each.left_out for each in told]))
     if left_out > 0.01:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from skinfab.errors import InputError
 from skinfab.fingertip.nail.classify import NailModel
+from skinfab.fingertip.nail.frozen import without_frozen
 from skinfab.fingertip.nail.histogram_model import HistogramModel
 from skinfab.fingertip.nail.labels import places_of, rate_of, six_channels
 from skinfab.fingertip.nail.phasors import FIND_SHORTEST, SHORTEST, find_drive, turns
@@ -202,7 +203,7 @@ class NailWatch:
         if self.turning is False:
             return Told(time_s, None, math.nan, left_out, False)
         try:
-            decision = self._reader.decide(window, drive_hz=self.drive_hz)
+            decision = self._reader.decide(without_frozen(window), drive_hz=self.drive_hz)
         except InputError:  # too little in this window; the next one may do
             decision = None
         return Told(time_s, decision, self.drive_hz, left_out, self.turning)

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from skinfab.errors import InputError
 from skinfab.fingertip.confusion import Confusion
 from skinfab.fingertip.nail.classify import NailModel, fit_phasors
+from skinfab.fingertip.nail.frozen import without_frozen
 from skinfab.fingertip.nail.histogram_model import HistogramModel, fit_histograms
 from skinfab.fingertip.nail.labels import NOTHING, Trial
 from skinfab.fingertip.nail.model_file import class_names
@@ -127,7 +128,7 @@ def prepare(trials: Sequence[Trial], *, drive_hz: float | None = None) -> Prepar
     rate = float(np.median(rates))
     if np.abs(rates - rate).max() > 0.01 * rate:
         raise InputError(f"the logs have {rates.min():.4g} to {rates.max():.4g} readings a second; record all of them at one rate")
-    masked = [np.where(each.saturated, np.nan, each.values) for each in trials]
+    masked = [without_frozen(np.where(each.saturated, np.nan, each.values)) for each in trials]
     drives = np.array([_drive(each, values, rate) if drive_hz is None else drive_hz for each, values in zip(trials, masked, strict=True)])
     first = np.array([lock_in(v[None, :BLOCK], rate, f).drive[0] for v, f in zip(masked, drives, strict=True)])
     reference = reference_of(first)
@@ -153,7 +154,7 @@ def _notes(trials: Sequence[Trial], names: tuple[str, ...], classes: IntArray, d
     there = np.isfinite(drive).all(axis=0)
     if not there.all():
         gone = ", ".join(np.array(CHANNELS)[~there])
-        notes.append(f"channel {gone} has too few readings in some trials, and the model does without")
+        notes.append(f"channel {gone} has too few readings in some trials, or stands still, and the model does without")
     saturated = np.concatenate([each.saturated for each in trials]).mean(axis=0)
     for name, part in zip(CHANNELS, saturated.tolist(), strict=True):
         if part > _SATURATED:
@@ -249,7 +250,7 @@ def _by_phasors(made: Prepared, train: IntArray, test: IntArray, samples: int | 
     decided, errors = [], np.full((len(test), 3), np.nan)
     for row, k in enumerate(test):
         trial = made.trials[k]
-        window = np.where(trial.saturated, np.nan, trial.values)[:samples]
+        window = without_frozen(np.where(trial.saturated, np.nan, trial.values)[:samples])
         drive, _ = turned_phasors(window[None], made.rate_hz, made.drive_hz[k], model.reference)
         usable = model
         if (gone := ~np.isfinite(drive[0]) & model.channels).any():

@@ -54,6 +54,12 @@ def channel_columns(stream: Stream) -> tuple[tuple[int, float], ...]:
     return tuple(out)
 
 
+def absent(stream: Stream) -> list[str]:
+    """What is to be said of channels that a stream does not have: a sentence, or nothing."""
+    names = [name for name, (k, _) in zip(CHANNELS, channel_columns(stream), strict=True) if k < 0]
+    return [f"stream {stream.name} has no {', '.join(names)}, and is decided without"] if names else []
+
+
 def units_said(stream: Stream) -> bool:
     """Does each of the six channels that is there declare its unit?"""
     return all(stream.channels[k].unit for k, _ in channel_columns(stream) if k >= 0)

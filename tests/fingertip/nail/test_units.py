@@ -11,7 +11,7 @@ from skinfab.fingertip.nail.labels import six_channels
 from skinfab.fingertip.nail.live import NailWatch, decide_log
 from skinfab.fingertip.nail.protocol import Protocol, session
 from skinfab.fingertip.nail.simulator import RATE_HZ, nail_stream
-from skinfab.fingertip.nail.units import CHANNELS, channel_columns, units_said
+from skinfab.fingertip.nail.units import CHANNELS, absent, channel_columns, units_said
 from skinfab.readout.frame import Channel, Recording, Stream
 
 
@@ -51,3 +51,9 @@ def test_what_says_nothing_is_taken_as_it_is() -> None:
     plain = stream("", "")
     assert not units_said(plain) and units_said(nail_stream()) and {scale for _, scale in channel_columns(plain)} == {1.0}
     assert not units_said(replace(plain, channels=(Channel("Ax", "G"), Channel("Ay"))))
+
+
+def test_what_a_stream_has_not_is_named() -> None:
+    stream = Stream("nail", tuple(Channel(name) for name in ("Ay", "Gx", "Ax", "Gy")), 1400.0)
+    assert absent(stream) == ["stream nail has no Az, Gz, and is decided without"]
+    assert absent(Stream("nail", tuple(Channel(name) for name in CHANNELS), 1400.0)) == []
