@@ -11,17 +11,9 @@ from pathlib import Path
 import pytest
 
 from gui.state.autosave import left_over
+from skinfab.cli.main import main
 
 ROOT = Path(__file__).parents[2]
-
-
-def start(tmp_path, *arguments, display=None, **more):
-    environment = {k: v for k, v in os.environ.items() if k not in ("DISPLAY", "WAYLAND_DISPLAY")}
-    environment |= {"SKINFAB_STATE": str(tmp_path / "state"), "PYTHONPATH": str(ROOT)} | more
-    if display is not None:
-        environment["DISPLAY"] = display
-    command = [sys.executable, "-c", "import sys; from skinfab.cli.main import main; sys.exit(main(sys.argv[1:]))", "gui"]
-    return subprocess.Popen([*command, *map(str, arguments)], env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
 
 def ended(process, timeout=30):
@@ -46,20 +38,36 @@ def display():
     server.wait(timeout=10)
 
 
-def test_without_a_screen_it_is_one_sentence(tmp_path):
-    status, out, err = ended(start(tmp_path))
+@pytest.fixture
+def said(tmp_path, monkeypatch, capfd):
+    """What `skinfab gui` with these words says that opens no window, in this process: its exit status, standard output and error."""
+    monkeypatch.setenv("SKINFAB_STATE", str(tmp_path / "state"))
+    for name in ("DISPLAY", "WAYLAND_DISPLAY"):
+        monkeypatch.delenv(name, raising=False)
+
+    def run(*words):
+        status = main(["gui", *map(str, words)])
+        return status, *capfd.readouterr()
+
+    return run
+
+
+def test_without_a_screen_it_is_one_sentence(said):
+    status, out, err = said()
     assert status == 1 and out == "" and err.startswith("skinfab: there is no screen") and err.count("\n") == 1 and "DISPLAY" in err
 
 
-@pytest.mark.parametrize(("name", "said"), [("gone.obj", "no such file"), ("", "is a folder")])
-def test_a_file_that_is_not_there_is_said_before_a_window_opens(tmp_path, name, said):
-    status, _, err = ended(start(tmp_path, tmp_path / name))
-    assert status == 1 and said in err and err.count("\n") == 1
+@pytest.mark.parametrize(("name", "why"), [("gone.obj", "no such file"), ("", "is a folder")])
+def test_a_file_that_is_not_there_is_said_before_a_window_opens(said, tmp_path, name, why):
+    status, _, err = said(tmp_path / name)
+    assert status == 1 and why in err and err.count("\n") == 1
 
 
-def test_a_state_folder_that_cannot_be_made_is_one_sentence(tmp_path, display):
+def test_a_state_folder_that_cannot_be_made_is_one_sentence(said, tmp_path, display, monkeypatch):
     (tmp_path / "file").write_text("")
-    status, _, err = ended(start(tmp_path, display=display, SKINFAB_STATE=str(tmp_path / "file" / "state")))
+    monkeypatch.setenv("DISPLAY", display)
+    monkeypatch.setenv("SKINFAB_STATE", str(tmp_path / "file" / "state"))
+    status, _, err = said()
     assert status == 1 and err.count("\n") == 1 and "file" in err
 
 
@@ -89,7 +97,8 @@ if __name__ == "__main__":
 """
 
 
-@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM, signal.SIGINT])
+# What SIGKILL leaves is seen in tests/gui/e2e/test_trouble.py.
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
 def test_whatever_ends_it_the_work_is_there_at_the_next_start(tmp_path, display, number):
     (tmp_path / "work.py").write_text(WORK)
     environment = os.environ | {"SKINFAB_STATE": str(tmp_path / "state"), "PYTHONPATH": str(ROOT), "DISPLAY": display}
@@ -100,9 +109,6 @@ def test_whatever_ends_it_the_work_is_there_at_the_next_start(tmp_path, display,
     process.send_signal(number)
     status, _, err = ended(process)
     assert time.monotonic() - began < 10
-    if number == signal.SIGKILL:
-        assert status == -signal.SIGKILL
-    else:
-        assert status == 130 and err == "skinfab: interrupted; nothing half-written was left\n"
+    assert status == 130 and err == "skinfab: interrupted; nothing half-written was left\n"
     (left,) = left_over(tmp_path / "state" / "autosave")
     assert left.load().seed == 42 and left.path is None

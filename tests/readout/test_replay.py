@@ -52,7 +52,7 @@ def test_opened_again_it_begins_again() -> None:
 
 
 def test_a_timeout_gives_none_and_loses_nothing() -> None:
-    with Replay(recording(3, step=0.2), speed=1.0) as source:
+    with Replay(recording(3, step=0.8), speed=1.0) as source:
         assert source.read(timeout=0.05).values[0] == 0
         assert source.read(timeout=0.01) is None
         assert source.read(timeout=5).values[0] == 1

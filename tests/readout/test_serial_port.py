@@ -133,9 +133,11 @@ def test_steps_of_the_wall_clock_do_not_reach_the_frames(monkeypatch: pytest.Mon
 
 
 def test_what_is_stale_is_an_error_and_the_newest_frame_is_given_as_often_as_it_is_asked_for() -> None:
+    told = threading.Event()
+
     def ten() -> Iterator[Frame]:
         yield from sent(10)
-        time.sleep(0.6)
+        told.wait(PATIENCE_S)
         yield sent(11)[10]
 
     with PtyServer(STREAM, ten()) as device, SerialPort(device.path) as port:
@@ -144,6 +146,7 @@ def test_what_is_stale_is_an_error_and_the_newest_frame_is_given_as_often_as_it_
         time.sleep(0.1)
         with pytest.raises(StaleError, match=r"s old, and 0\.05 s are allowed"):
             port.read_latest(0.05)
+        told.set()
         assert port.read(PATIENCE_S) is not None and port.read_latest(5.0).sequence == 10
 
 

@@ -55,8 +55,14 @@ def test_answers_while_it_works_and_stops_at_once(start: Callable[..., Window], 
     assert window.process.wait(timeout=20) == 0, "a mesh that was only opened is not asked about"
 
 
-def test_work_that_dies_leaves_a_sentence(start: Callable[..., Window]) -> None:
-    window = start(MESHES / "grip.obj")
+def test_a_file_that_is_no_mesh_and_work_that_dies_leave_a_sentence(start: Callable[..., Window], tmp_path: Path) -> None:
+    bad = tmp_path / "bad.obj"
+    bad.write_text("v 0 0 0\nv 1 0 nonsense\nf 1 2 9\n", encoding="utf-8")
+    window = start(bad)
+    until(lambda: any("bad.obj" in line for line in window.problems), "a sentence")
+    assert not any("Traceback" in line for line in window.problems)
+    window.key("ctrl+o")
+    window.file_named(MESHES / "cup.obj")
     window.open_mesh()
     window.settled()
     window.key("F5")
@@ -64,19 +70,6 @@ def test_work_that_dies_leaves_a_sentence(start: Callable[..., Window]) -> None:
     window.stop_work()
     until(lambda: any("was ended by the system" in line for line in window.problems), "a sentence")
     assert not window.busy
-    window.key("ctrl+o")
-    window.file_named(MESHES / "cube.obj")
-    window.open_mesh("12 triangles")
-    window.settled()
-    cut_cube(window)
-
-
-def test_a_file_that_is_no_mesh_leaves_a_sentence(start: Callable[..., Window], tmp_path: Path) -> None:
-    bad = tmp_path / "bad.obj"
-    bad.write_text("v 0 0 0\nv 1 0 nonsense\nf 1 2 9\n", encoding="utf-8")
-    window = start(bad)
-    until(lambda: any("bad.obj" in line for line in window.problems), "a sentence")
-    assert not any("Traceback" in line for line in window.problems)
     window.key("ctrl+o")
     window.file_named(MESHES / "cube.obj")
     window.open_mesh("12 triangles")
@@ -135,7 +128,7 @@ def test_unsaved_work_is_asked_about_and_the_worker_ends_too(start: Callable[...
 
 
 def test_a_terminated_window_takes_its_worker_along(start: Callable[..., Window]) -> None:
-    window = start(MESHES / "grip.obj")
+    window = start(MESHES / "cup.obj")
     window.open_mesh()
     window.settled()
     window.key("F5")

@@ -32,18 +32,19 @@ def test_an_answer_comes_in_the_windows_own_thread(root, background):
 
 
 def test_only_the_newest_question_is_answered(root, background):
-    heard, begun = [], threading.Event()
+    heard, begun, asked = [], threading.Event(), threading.Event()
 
     def slow():
         begun.set()
-        time.sleep(0.1)
+        asked.wait(30)
         return "old"
 
     background.ask("strain", slow, lambda o: heard.append(o.result))
-    begun.wait(5)
+    begun.wait(30)
     background.ask("strain", lambda: "skipped", lambda o: heard.append(o.result))
     background.ask("strain", lambda: "new", lambda o: heard.append(o.result))
     background.ask("other", lambda: "other", lambda o: heard.append(o.result))
+    asked.set()
     wait(root, lambda: len(heard) == 2)
     root.after(100, lambda: heard.append("end"))
     wait(root, lambda: "end" in heard)

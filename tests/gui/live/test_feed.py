@@ -101,7 +101,7 @@ def test_a_recording_is_whole_where_the_source_is_closed_in_its_midst(feeds, tmp
     feed = feeds(SimulatorChoice("strain channels"))
     until(lambda: feed.status().state == "running")
     feed.record(Recorder(tmp_path / "a.csv", feed.status().stream))
-    time.sleep(0.4)
+    until(lambda: feed.recording is not None and feed.recording.frames > 20)
     feed.close()
     assert feed.join(2.0)
     recording = read_log(tmp_path / "a.csv").recording

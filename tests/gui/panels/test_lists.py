@@ -1,5 +1,6 @@
 """The lists of pieces and sensors follow the document and the selection, both ways."""
 
+import time
 from dataclasses import replace
 from tkinter import font, ttk
 
@@ -83,10 +84,13 @@ def test_forms_are_as_high_as_the_one_that_is_shown(root, session):
     forms.add(high, text="high")
     forms.pack()
     heights = []
-    for shown in (low, high, low):
+    for shown, height in ((low, 60), (high, 300), (low, 60)):
         forms.select(shown)
-        root.after(50, lambda: root.setvar("shown", "1"))
-        root.wait_variable("shown")
+        end = time.monotonic() + 30
+        while shown.winfo_height() != height:
+            assert time.monotonic() < end
+            root.update()
+            time.sleep(0.005)
         heights.append(forms.winfo_height())
     assert heights[0] == heights[2] == heights[1] - 240
 

@@ -1,5 +1,6 @@
 """The flat view in a real window, led by mouse and keys."""
 
+import time
 from dataclasses import replace
 
 import numpy as np
@@ -45,6 +46,15 @@ def test_a_modifier_switches_snapping_off(window):
     assert sensor(window).x == pytest.approx(20 + 33 / scale, abs=1e-5)
 
 
+def rest(window):
+    """Hold the pointer still until the document has followed."""
+    before, end = window.session.skin, time.monotonic() + 30
+    while window.session.skin is before:
+        assert time.monotonic() < end
+        window.root.update()
+        time.sleep(0.005)
+
+
 def test_while_it_is_dragged_it_says_what_is_wrong_and_the_document_follows_at_rest(window):
     view, x, y = window.view, *window.view.place_of("C1")
     edge = at(window, "P1", 0.0, 30.0)[0]
@@ -52,8 +62,7 @@ def test_while_it_is_dragged_it_says_what_is_wrong_and_the_document_follows_at_r
     window.pointer.move(edge, y, 0x100)
     (finding,) = view.hands.findings["C1"]
     assert "mm outside P1" in finding.brief and window.session.problems == ()
-    window.root.after(200, lambda: window.root.setvar("rested", "1"))
-    window.root.wait_variable("rested")
+    rest(window)
     (problem,) = window.session.problems
     assert "outside piece P1" in problem.text and problem.target == Target(piece="P1", sensor="C1")
     window.pointer.move(x, y, 0x100)
@@ -84,8 +93,7 @@ def test_escape_takes_a_drag_back(window):
         window.pointer.press(x, y)
         window.pointer.move(x + 60, y + 20, 0x100)
         if committed:
-            window.root.after(200, lambda: window.root.setvar("rested", "1"))
-            window.root.wait_variable("rested")
+            rest(window)
             assert window.session.skin is not before
         window.pointer.key("Escape")
         window.pointer.release(x + 60, y + 20)
@@ -103,8 +111,7 @@ def test_undo_during_a_drag_ends_it_and_escape_then_takes_nothing_more_back(wind
     window.pointer.press(x, y)
     window.pointer.move(x + 60, y + 20, 0x100)
     if rested:
-        window.root.after(200, lambda: window.root.setvar("rested", "1"))
-        window.root.wait_variable("rested")
+        rest(window)
     window.session.undo()
     window.root.update()
     left = second if rested else first
@@ -120,8 +127,7 @@ def test_escape_during_a_drag_takes_back_no_step_of_another(window):
     x, y = window.view.place_of("C1")
     window.pointer.press(x, y)
     window.pointer.move(x + 60, y + 20, 0x100)
-    window.root.after(200, lambda: window.root.setvar("rested", "1"))
-    window.root.wait_variable("rested")
+    rest(window)
     window.session.do("another seed", replace(window.session.skin, seed=7))
     assert window.view.hands.sensors == ()
     window.pointer.key("Escape")
