@@ -1,5 +1,5 @@
 # Two commands do everything, their own set-up included: `make demo` and `make test`.
-.PHONY: demo test setup lint peers lock pictures
+.PHONY: demo test collected setup lint peers lock pictures
 
 PYTHON = .venv/bin/python
 
@@ -12,9 +12,13 @@ demo: setup
 test: export PYTHONDONTWRITEBYTECODE =
 test: export OMP_NUM_THREADS = 1
 test: export OPENBLAS_NUM_THREADS = 1
-test: lint peers
+test: lint peers collected
 	@# Stealing leaves files whole but for a few: what the tests of a file share is made once. (loadgroup groups nothing with pytest 9.2 and xdist 3.8.)
 	$(PYTHON) -m pytest -q -W error -n 2 --dist worksteal --doctest-modules skinfab gcode calibration tests
+
+# The tests' files are compiled here, while the linters and the peers leave a core free: both workers at once would do it twice.
+collected: setup
+	@$(PYTHON) -m pytest -q -W error --collect-only --doctest-modules skinfab gcode calibration tests >.venv/collected || { cat .venv/collected; exit 1; }
 
 # Programs of others that tests compare with.
 peers: setup
