@@ -7,10 +7,12 @@ import pytest
 
 from skinfab.fingertip.nail.histogram_model import fit_histograms
 from skinfab.fingertip.nail.improved import asked, frequency, learn
-from skinfab.fingertip.nail.phasors import find_drive, lock_in, lock_in_weights
+from skinfab.fingertip.nail.live import decide_log
+from skinfab.fingertip.nail.phasors import find_drive, lock_in, lock_in_weights, turns
 from skinfab.fingertip.nail.protocol import Protocol, Session, sessions
 from skinfab.fingertip.nail.reader import Reader
-from skinfab.fingertip.nail.simulator import RATE_HZ, Scene, readings
+from skinfab.fingertip.nail.simulator import RATE_HZ, Scene, nail_stream, readings
+from skinfab.readout.frame import Recording
 
 SMALL = Protocol(participants=3, training=5, rounds=5, estimates=1, samples=256)
 CHANCE = 1 / 12
@@ -157,3 +159,14 @@ def test_a_motor_that_is_off_is_not_read_as_a_touch(usual: list[Session]) -> Non
     still = np.random.default_rng(0).normal(scale=0.02 * np.abs(usual[0].training.readings).max(axis=(0, 1, 2)), size=(60, 256, 6))
     assert model.decide(still).contact.mean() > 0.5  # what a model that only compares says of noise
     assert np.isnan(find_drive(still, RATE_HZ)).all() and np.isfinite(find_drive(asked(usual[0]), RATE_HZ)).all()
+
+
+@pytest.mark.parametrize("samples", [200, 233])
+def test_trials_put_together_to_one_log_jump_in_phase(usual: list[Session], samples: int) -> None:
+    trials = usual[0].training.readings[:24, 0, :samples]  # each begins at a phase of its own
+    values = trials.reshape(-1, 6)
+    joints = np.array([values[k * samples - 32 : k * samples + 32] for k in range(1, 24)])
+    assert turns(trials[:, :64], RATE_HZ, 169.0).all() and not turns(joints, RATE_HZ, 169.0).all()  # naive: it was switched off
+    log = Recording.of_values(nail_stream(), values, device_time=np.arange(len(values)) / RATE_HZ)
+    told, _ = decide_log(learn(usual[0]), log, samples=33, every=8)
+    assert len(told) > 500 and all(each.turning is not False and each.decision is not None for each in told)

@@ -59,7 +59,7 @@ def save_nail(path: str | Path, content: NailFile) -> None:
         "drive_hz": model.drive_hz,
         "shrinkage": model.shrinkage,
         "temperature": model.temperature,
-        "units": {"Ax, Ay, Az": "as logged", "Gx, Gy, Gz": "as logged", "targets": list(TARGETS)},
+        "units": {"Ax, Ay, Az": "G", "Gx, Gy, Gz": "deg/s", "otherwise": "as logged, where no unit was declared", "targets": list(TARGETS)},
     }
     arrays = {
         "classes": model.classes,

@@ -189,9 +189,11 @@ def splits_of(trials: Sequence[Trial], *, across: bool) -> list[Split]:
     if test.any() and not test.all():
         return [(np.flatnonzero(~test), np.flatnonzero(test))]
     labels = [each.label.label for each in trials]
-    least = min(labels.count(name) for name in set(labels))
-    if least < 2:
-        raise InputError("a class has a single trial, so that none can be held out to say how good the model is; record another one")
+    rarest = min(dict.fromkeys(labels), key=labels.count)
+    if (least := labels.count(rarest)) < 2:
+        raise InputError(
+            f"class {rarest!r} has a single trial, so that none can be held out to say how good the model is; record another one"
+        )
     return group_folds(_groups(trials), k=min(FOLDS, least), strata=labels)
 
 

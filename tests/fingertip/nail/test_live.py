@@ -151,10 +151,3 @@ def test_a_motor_that_is_off_decides_nothing(one: Session, model: NailModel, spr
     assert all(decision is not None for k, decision in at if k < 1024) and all(decision is None for k, decision in at if k > 1024 + 128)
     noise = [each.decision for each in told if 1024 + 33 < round(each.time_s * RATE_HZ) <= 1024 + 128 and each.decision]
     assert bool(noise) == (spread > 0) and all(each.strange for each in noise)  # until it is told; a sensor that hangs is none
-
-
-@pytest.mark.parametrize("samples", [200, 333])
-def test_trials_put_together_to_one_log_do_not_stop_the_motor(one: Session, model: NailModel, samples: int) -> None:
-    cut = one.training.readings[:24, 0, :samples]  # each begins at a phase of its own
-    told, _ = decide_log(model, log(cut.reshape(-1, 6)), samples=33, every=8)
-    assert len(told) > 500 and all(each.turning is not False and each.decision is not None for each in told)
