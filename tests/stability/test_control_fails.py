@@ -6,12 +6,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from joint import driven
 
-from calibration.control.controller import LAWS, RESUME_DEG_S2, Command, Input, JointController, Law
+from calibration.control.controller import LAWS, RESUME_DEG_S2, Input, JointController, Law
 from calibration.control.margin import judged
 from calibration.control.protocols import Motion, follow, uniform
 from calibration.finger.logs import calibrated, prepared
-from calibration.finger.simulated import HUMAN, RATE_HZ, ROBOT, Finger, FingerSensor, Plant, Reader
+from calibration.finger.simulated import HUMAN, RATE_HZ, ROBOT, Finger, Plant, Reader
 from calibration.strain.curve import fit_curve
 from calibration.strain.document import SensorCalibration
 from calibration.strain.models import CurveModel
@@ -24,11 +25,6 @@ TIMES: dict[str, Any] = {"lag_s": 0.1, "delay_s": 0.05, "period_s": 0.01}
 @pytest.fixture(scope="module")
 def plain() -> tuple[Input, Input]:
     return Input(calibrated(HUMAN, "poly")), Input(calibrated(ROBOT, "poly"))
-
-
-@pytest.fixture(scope="module")
-def branches() -> tuple[Input, Input]:
-    return Input(calibrated(HUMAN, "branches")), Input(calibrated(ROBOT, "branches"))
 
 
 def hold_still(seconds: float = 12.0) -> Motion:
@@ -83,18 +79,6 @@ def test_a_curve_that_turns_has_two_angles_for_a_reading() -> None:
     assert made.monotone and not made.angle(float(made.signal(70.0)))[1]
 
 
-@pytest.fixture
-def credulous(monkeypatch: pytest.MonkeyPatch) -> Callable[[], None]:
-    """From its call on every reading that is a number is believed, however it repeats and whatever the joint is told meanwhile."""
-
-    def believe() -> None:
-        monkeypatch.setattr("calibration.control.controller.FAR_SPANS", np.inf)
-        monkeypatch.setattr("calibration.control.frozen.FROZEN_S", np.inf)
-        monkeypatch.setattr("calibration.control.follows.FAR_PART", np.inf)
-
-    return believe
-
-
 def stale(plain: tuple[Input, Input], since: float, *, watchdog: bool) -> tuple[float, str]:
     """Where the joint is 12 s after the human's board froze at `since`, with or without a look at the frames' age."""
     motion, finger = uniform(), Finger(Plant(), seed=0)
@@ -140,30 +124,6 @@ def test_a_loose_wire_reads_as_a_rail(plain: tuple[Input, Input], credulous: Cal
     credulous()
     believed = JointController(*plain, law="p", gain=3.0).step(0.0, lying, good)
     assert believed.speed > 60 and believed.outside
-
-
-def driven(
-    inputs: tuple[Input, Input],
-    fault: Callable[[float, float, float], tuple[float, float]],
-    *,
-    sensors: tuple[FingerSensor, ...],
-    until: float = 8.0,
-) -> tuple[np.ndarray, np.ndarray, list[Command]]:
-    """The human's angles, the robot's and the commands of 8 s of 45 + 25 sin(t) degrees, still from `until` on; `fault` makes readings of
-    time and readings."""
-    controller, finger = JointController(*inputs, law="full", gain=3.99), Finger(Plant(sensor=sensors[1]), seed=0, angle=45.0)
-    reader, speed, rows, commands = Reader(sensors[0], 0.05, np.random.default_rng(1)), 0.0, [], []
-    for k in range(round(8 * RATE_HZ)):
-        time = k / RATE_HZ
-        angle = 45 + 25 * np.sin(min(time, until))
-        frames = (reader.read(time, angle), finger.step(time, speed))
-        values = fault(time, *(float(frame.values[0]) for frame in frames))
-        human, robot = (replace(frame, values=np.array([value])) for frame, value in zip(frames, values, strict=True))
-        commands.append(controller.step(time, human, robot))
-        speed = commands[-1].speed
-        rows.append((angle, finger.angle))
-    angles, went = np.array(rows).T
-    return angles, went, commands
 
 
 @pytest.mark.parametrize("rail", [0.0, 3.3])
@@ -218,128 +178,6 @@ def test_frozen_readings_are_not_followed(branches: tuple[Input, Input], credulo
     credulous()
     _, _, commands = driven(branches, freeze, sensors=sensors)
     assert commands[-1].state == "run"
-
-
-def told_deg(commands: list[Command], since: int) -> float:
-    """Between which the joint was told to be, from a frame on, deg."""
-    return float(np.ptp(np.cumsum([command.speed for command in commands[since:]])) / RATE_HZ)
-
-
-@pytest.mark.parametrize("noise", [1.0, 0.0])
-def test_a_joint_that_does_not_move_is_pushed_for_ever(branches: tuple[Input, Input], credulous: Callable[[], None], noise: float) -> None:
-    """At 50 degrees, while the human's goes to 70 and stays there: the error stays, and so does the command."""
-    sensors = (HUMAN, replace(ROBOT, noise=noise * ROBOT.noise))
-    stays = {"human": lambda time: 45 + 25 * np.sin(min(time, 0.5 * np.pi)), "wall": lambda time: 50.0}
-    _, commands = blocked(branches, sensors=sensors, seconds=20, law="p", **stays)
-    assert told_deg(commands, 0) < 320
-    assert "robot_V shows nothing of it" in next(command for command in commands if command.state == "block").reason
-    credulous()
-    _, commands = blocked(branches, sensors=sensors, seconds=20, law="p", **stays)
-    assert told_deg(commands, 0) > 900 and commands[-1].state == "run"
-
-
-def blocked(
-    inputs: tuple[Input, Input],
-    *,
-    human: Callable[[float], float],
-    wall: Callable[[float], float],
-    seconds: float,
-    sensors: tuple[FingerSensor, ...] = (HUMAN, ROBOT),
-    law: Law = "full",
-    drive: Callable[[float, float], float] = lambda time, command: command,
-) -> tuple[np.ndarray, list[Command]]:
-    """The robot's angle and the commands, where something stands in its way at an angle that is a function of time.
-
-    `drive` is what becomes of a command.
-    """
-    controller, reader = JointController(*inputs, law=law, gain=3.99), Reader(sensors[0], 0.05, np.random.default_rng(1))
-    finger, speed, went, commands = Finger(Plant(sensor=sensors[1]), seed=0, angle=min(45.0, wall(0.0))), 0.0, [], []
-    for k in range(round(seconds * RATE_HZ)):
-        time = k / RATE_HZ
-        finger.plant = replace(finger.plant, high=wall(time))
-        commands.append(controller.step(time, reader.read(time, human(time)), finger.step(time, drive(time, speed))))
-        speed = commands[-1].speed
-        went.append(finger.angle)
-    return np.array(went), commands
-
-
-@pytest.mark.parametrize("noise", [1.0, 0.0])
-@pytest.mark.parametrize("law", LAWS)
-@pytest.mark.parametrize(("top", "wall"), [(70.0, 50.0), (90.0, 95.0)], ids=["grasp", "stop"])
-def test_who_held_something_can_let_it_go(branches: tuple[Input, Input], law: Law, noise: float, top: float, wall: float) -> None:
-    """A grasp at 50 degrees, and a human beyond the range for ten seconds: blocked that way, and at once free the other way."""
-    sensors = tuple(replace(sensor, noise=noise * sensor.noise) for sensor in (HUMAN, ROBOT))
-
-    def human(time: float) -> float:
-        return 45 + (top - 45) * min(time, 1.0) if time < 11 else max(top - 30 * (time - 11), 20.0)
-
-    went, commands = blocked(branches, human=human, wall=lambda time: wall, seconds=18, sensors=sensors, law=law)
-    assert "stop" not in {command.state for command in commands}
-    assert went[1090] > wall - 20 and abs(went[-200:].mean() - 20) < 14
-    assert {command.state for command in commands[-400:]} == {"run"}
-
-
-@pytest.mark.parametrize("law", LAWS)
-def test_a_hand_lets_go_as_fast_as_if_nothing_had_been_held(
-    branches: tuple[Input, Input], law: Law, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """The human opens by 400 deg/s after squeezing for 14 s: when the joint is 10 degrees off the object."""
-
-    def late() -> int:
-        went, _ = blocked(
-            branches,
-            human=lambda t: 45 + 35 * min(t, 1) if t < 15 else max(80 - 400 * (t - 15), 20),
-            wall=lambda t: 50,
-            seconds=17,
-            law=law,
-        )
-        return int(np.flatnonzero(went[1500:] < 40)[0])
-
-    held = late()
-    monkeypatch.setattr("calibration.control.follows.FAR_PART", np.inf)
-    assert held <= late() + 6
-
-
-@pytest.mark.parametrize("law", LAWS)
-def test_a_hand_that_was_off_is_back_by_itself(branches: tuple[Input, Input], law: Law) -> None:
-    """Its drive is off from 2 to 6 s (an emergency stop), and works half as fast as told before and after; the human goes to and fro."""
-
-    def off(time: float, command: float) -> float:
-        return 0.0 if 2 < time < 6 else 0.5 * command
-
-    went, commands = blocked(branches, human=lambda t: 45 + 25 * np.sin(t), wall=lambda t: 95.0, seconds=24, law=law, drive=off)
-    assert "block" in {command.state for command in commands[200:800]}
-    time = np.arange(1600, 2400) / RATE_HZ
-    assert {command.state for command in commands[1600:]} == {"run"} and abs(went[1600:] - 45 - 25 * np.sin(time)).mean() < 15
-
-
-def test_a_frozen_reading_of_the_robots_alone(branches: tuple[Input, Input], credulous: Callable[[], None]) -> None:
-    """Without noise of its own it might be a joint at rest, were that not told to go further than slack is wide."""
-    last = [np.nan]
-
-    def freeze(time: float, human: float, robot: float) -> tuple[float, float]:
-        last[0] = last[0] if time >= 3.0 else robot
-        return human, last[0]
-
-    silent = (HUMAN, replace(ROBOT, noise=0.0))
-    _, _, commands = driven(branches, freeze, sensors=silent, until=4.5)
-    assert "block" in {command.state for command in commands} and told_deg(commands, 300) < 160
-    credulous()
-    _, went, commands = driven(branches, freeze, sensors=silent, until=4.5)
-    assert told_deg(commands, 300) > 200 and not 1 < went[300:].min() < went[300:].max() < 94
-
-
-def test_a_wire_that_hums_shows_no_joint(branches: tuple[Input, Input], credulous: Callable[[], None]) -> None:
-    """A robot's channel that hangs in the air, in the midst of its range: 50 Hz, which no joint makes, and never the same."""
-
-    def hum(time: float, human: float, robot: float) -> tuple[float, float]:
-        return human, 2.08 + 0.02 * np.sin(997 * time) if time >= 1.0 else robot
-
-    _, _, commands = driven(branches, hum, sensors=(HUMAN, ROBOT), until=4.5)
-    assert {"block"} <= {command.state for command in commands} and told_deg(commands, 100) < 160
-    credulous()
-    _, _, commands = driven(branches, hum, sensors=(HUMAN, ROBOT), until=4.5)
-    assert told_deg(commands, 100) > 200
 
 
 @pytest.mark.parametrize("step_V", [1e-6, 1e-3, 5e-3])
