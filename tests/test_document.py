@@ -1,10 +1,8 @@
 """The skin document: save(load) is the identity, the bytes are the same every time, and bad files are refused in one line."""
 
-import dataclasses
 import io
 import json
 import math
-import re
 import subprocess
 import sys
 import tempfile
@@ -15,53 +13,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from documents import assert_refused, assert_same, edit_json, grid_skin, npy, rewrite
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from skinfab.document import load_skin, save_skin
 from skinfab.errors import InputError, RefusedError
-from skinfab.mesh.model import Mesh
 from skinfab.patterns.registry import make_pattern
 from skinfab.pieces import Piece
 from skinfab.placement.sensor import Sensor
-from skinfab.skin import SeamMarks, Skin, Source
 
 FINITE = st.floats(-1e6, 1e6, allow_nan=False)
-
-
-def grid_skin(*, columns: int = 4, rows: int = 3, sensors: tuple[Sensor, ...] = (), **changes: object) -> Skin:
-    """A sheet of squares, cut into its left and its right half, each already flat."""
-    x, y = np.meshgrid(np.arange(columns + 1) * 0.1, np.arange(rows + 1) / 3)
-    V = np.c_[x.ravel(), y.ravel(), np.sin(x.ravel())]
-    corner = (np.arange(rows)[:, None] * (columns + 1) + np.arange(columns)).ravel()
-    F = np.vstack([np.c_[corner, corner + 1, corner + columns + 2], np.c_[corner, corner + columns + 2, corner + columns + 1]])
-    left = np.tile(np.arange(columns) < columns // 2, rows * 2)
-    pieces = []
-    for k, mine in enumerate((left, ~left)):
-        faces = np.flatnonzero(mine)
-        vertices, inverse = np.unique(F[faces], return_inverse=True)
-        pieces.append(Piece(f"P{k + 1}", faces, vertices, inverse.reshape(-1, 3), V[vertices, :2] + 1 / 7))
-    seam = np.arange(rows + 1) * (columns + 1) + columns // 2
-    source = Source("grid.obj", "ab" * 32, "in", 25.4)
-    values = {"sensors": sensors, "seed": 7, "max_distortion": 4.1, **changes}
-    return Skin(mesh=Mesh(V, F, "grid"), source=source, seams=np.c_[seam[:-1], seam[1:]], pieces=tuple(pieces), **values)  # type: ignore[arg-type]
-
-
-def assert_same(one: Skin, two: Skin) -> None:
-    np.testing.assert_array_equal(one.mesh.V, two.mesh.V)
-    np.testing.assert_array_equal(one.mesh.F, two.mesh.F)
-    np.testing.assert_array_equal(one.seams, two.seams)
-    assert one.mesh.V.dtype == two.mesh.V.dtype and one.seams.dtype == two.seams.dtype
-    for p, q in zip(one.pieces, two.pieces, strict=True):
-        assert p.id == q.id
-        for field in ("faces", "vertices", "F", "UV"):
-            np.testing.assert_array_equal(getattr(p, field), getattr(q, field))
-            assert getattr(p, field).dtype == getattr(q, field).dtype
-    for field in ("source", "sensors", "printer", "material", "max_distortion", "seed"):
-        assert getattr(one, field) == getattr(two, field)
-    assert one.mesh.name == two.mesh.name
-    np.testing.assert_array_equal(one.object.V, two.object.V)
-    assert (one.thickness, one.neutral, one.flattened_at) == (two.thickness, two.neutral, two.flattened_at)
 
 
 patterns = st.one_of(
@@ -112,157 +74,10 @@ def test_any_zip_tool_and_numpy_read_it(saved: Path) -> None:
     np.testing.assert_array_equal(V, grid_skin().mesh.V)
 
 
-def rewrite(path: Path, change: Callable[[str, bytes], bytes | None], *, method: int = zipfile.ZIP_STORED) -> None:
-    """The same zip with members changed (None: left out)."""
-    with zipfile.ZipFile(path) as archive:
-        members = {name: archive.read(name) for name in archive.namelist()}
-    with zipfile.ZipFile(path, "w", method) as archive:
-        for name, content in members.items():
-            if (new := change(name, content)) is not None:
-                archive.writestr(name, new)
-
-
-def edit_json(path: Path, change: Callable[[dict], object]) -> None:  # type: ignore[type-arg]
-    def edited(name: str, content: bytes) -> bytes:
-        if name != "skin.json":
-            return content
-        data = json.loads(content)
-        change(data)
-        return json.dumps(data).encode()
-
-    rewrite(path, edited)
-
-
-def assert_refused(path: Path, says: str) -> None:
-    with pytest.raises(InputError, match=says) as caught:
-        load_skin(path)
-    message = str(caught.value)
-    assert message.startswith(str(path)) and "\n" not in message and len(message) < 400
-
-
 def test_a_repacked_document_still_opens(saved: Path) -> None:
     before = load_skin(saved)
     rewrite(saved, lambda name, content: content, method=zipfile.ZIP_DEFLATED)
     assert_same(load_skin(saved), before)
-
-
-def thick_skin(**changes: object) -> Skin:
-    """The grid flattened for a skin of 2.5 mm: the object itself lies lower."""
-    skin = grid_skin(thickness=2.5, **changes)
-    return dataclasses.replace(skin, object_V=skin.mesh.V - [0, 0, 2.5 * skin.neutral])
-
-
-def test_a_thickness_is_kept_byte_for_byte(tmp_path: Path) -> None:
-    skin = thick_skin(neutral=1 / 3)
-    save_skin(skin, tmp_path / "a.skin")
-    again = load_skin(tmp_path / "a.skin")
-    assert_same(skin, again)
-    assert again.object.V[0, 2] < again.mesh.V[0, 2] and again.flattened_at == skin.flattened_at == pytest.approx(2.5 / 3)
-    save_skin(again, tmp_path / "b.skin")
-    assert (tmp_path / "a.skin").read_bytes() == (tmp_path / "b.skin").read_bytes()
-
-
-def test_documents_that_know_no_thickness_open(tmp_path: Path) -> None:
-    """What releases before thickness wrote is what is written without one."""
-    save_skin(grid_skin(), tmp_path / "old.skin")
-    with zipfile.ZipFile(tmp_path / "old.skin") as archive:
-        assert "thickness" not in json.loads(archive.read("skin.json")) and "object/V.npy" not in archive.namelist()
-    old = load_skin(tmp_path / "old.skin")
-    assert (old.thickness, old.neutral, old.flattened_at) == (0, 0.5, 0) and old.object is old.mesh
-
-
-@pytest.mark.parametrize(
-    ("entry", "says"),
-    [
-        ({"thickness_mm": -1.0, "neutral": 0.5}, "-1 mm with neutral 0.5; they must be 0 or more, and from 0 to 1"),
-        ({"thickness_mm": 2.5, "neutral": 1.5}, "neutral 1.5"),
-        ({"thickness_mm": 2.5}, "neutral is missing"),
-        ({"thickness_mm": "2.5", "neutral": 0.5}, "must be a float"),
-        (2.5, "must be a dict"),
-    ],
-)
-def test_a_thickness_that_makes_no_sense(entry: object, says: str, tmp_path: Path) -> None:
-    save_skin(thick_skin(), tmp_path / "a.skin")
-
-    def change(name: str, content: bytes) -> bytes:
-        return json.dumps(json.loads(content) | {"thickness": entry}).encode() if name == "skin.json" else content
-
-    rewrite(tmp_path / "a.skin", change)
-    with pytest.raises(InputError, match=re.escape(says)):
-        load_skin(tmp_path / "a.skin")
-
-
-def test_a_thickness_without_the_object(tmp_path: Path) -> None:
-    save_skin(thick_skin(), tmp_path / "a.skin")
-    rewrite(tmp_path / "a.skin", lambda name, content: None if name == "object/V.npy" else content)
-    with pytest.raises(InputError, match="object/V"):
-        load_skin(tmp_path / "a.skin")
-
-
-def marked_skin() -> Skin:
-    skin = grid_skin()
-    preference = np.zeros(len(skin.mesh.F), dtype=np.int8)
-    preference[[0, 3]] = 1, -1
-    return dataclasses.replace(skin, marks=SeamMarks(skin.seams[:2], np.array([[0, 1]]), preference))
-
-
-def test_marks_are_kept_byte_for_byte(tmp_path: Path) -> None:
-    skin = marked_skin()
-    save_skin(skin, tmp_path / "a.skin")
-    back = load_skin(tmp_path / "a.skin")
-    assert skin.marks is not None and back.marks is not None
-    for field in ("locked", "forbidden", "preference"):
-        np.testing.assert_array_equal(getattr(skin.marks, field), getattr(back.marks, field))
-        assert getattr(skin.marks, field).dtype == getattr(back.marks, field).dtype
-    save_skin(back, tmp_path / "b.skin")
-    assert (tmp_path / "a.skin").read_bytes() == (tmp_path / "b.skin").read_bytes()
-
-
-def test_documents_that_know_no_marks_open(tmp_path: Path) -> None:
-    """What releases before marks wrote is what is written without any, and marks that say nothing are none."""
-    skin = grid_skin()
-    save_skin(skin, tmp_path / "a.skin")
-    save_skin(dataclasses.replace(skin, marks=SeamMarks.none(len(skin.mesh.F))), tmp_path / "b.skin")
-    assert (tmp_path / "a.skin").read_bytes() == (tmp_path / "b.skin").read_bytes()
-    with zipfile.ZipFile(tmp_path / "a.skin") as archive:
-        assert "marks" not in json.loads(archive.read("skin.json"))
-        assert not any(name.startswith("marks/") for name in archive.namelist())
-    assert load_skin(tmp_path / "a.skin").marks is None
-
-
-@pytest.mark.parametrize(
-    ("change", "says"),
-    [
-        (lambda d: d.update(marks=[]), "marks is .*; it must be a dict"),
-        (lambda d: d["marks"].pop("n_locked"), "n_locked is missing"),
-        (lambda d: d["marks"].update(n_locked=3), r"shape \(2, 2\); skin.json says \(3, 2\)"),
-        (lambda d: d["marks"].update(n_forbidden=-1), "negative"),
-        (lambda d: d["marks"].update(n_forbidden=10**12), "skin.json says"),
-    ],
-)
-def test_marks_that_contradict_the_document(change: Callable[[dict], object], says: str, tmp_path: Path) -> None:  # type: ignore[type-arg]
-    save_skin(marked_skin(), tmp_path / "a.skin")
-    edit_json(tmp_path / "a.skin", change)
-    assert_refused(tmp_path / "a.skin", says)
-
-
-@pytest.mark.parametrize(
-    ("member", "array", "says"),
-    [
-        ("marks/locked.npy", np.array([[0, 1], [0, 19]]), "no edge of the mesh joins"),
-        ("marks/locked.npy", np.array([[0, 1], [0, 99]]), "no edge of the mesh joins"),
-        ("marks/forbidden.npy", np.array([[-1, 1]]), "no edge of the mesh joins"),
-        ("marks/forbidden.npy", np.array([[0.0, 1.0]]), "dtype '<f8'"),
-        ("marks/preference.npy", np.full(24, 2), "other than -1"),
-        ("marks/preference.npy", np.full(24, np.iinfo(np.int64).min), "other than -1"),
-        ("marks/preference.npy", np.zeros(23, dtype=np.int64), "shape"),
-        ("marks/preference.npy", None, "is missing"),
-    ],
-)
-def test_damaged_marks_are_refused(member: str, array: np.ndarray | None, says: str, tmp_path: Path) -> None:
-    save_skin(marked_skin(), tmp_path / "a.skin")
-    rewrite(tmp_path / "a.skin", lambda name, old: (None if array is None else npy(array)) if name == member else old)
-    assert_refused(tmp_path / "a.skin", says)
 
 
 @pytest.mark.parametrize(
@@ -294,12 +109,6 @@ def test_damaged_marks_are_refused(member: str, array: np.ndarray | None, says: 
 def test_a_document_that_contradicts_itself(saved: Path, change: Callable[[dict], object], says: str) -> None:  # type: ignore[type-arg]
     edit_json(saved, change)
     assert_refused(saved, says)
-
-
-def npy(array: np.ndarray, **options: object) -> bytes:
-    stream = io.BytesIO()
-    np.save(stream, array, **options)  # type: ignore[arg-type]
-    return stream.getvalue()
 
 
 def with_header(header: str, data: bytes = b"") -> bytes:
