@@ -6,12 +6,11 @@ import tkinter as tk
 from collections.abc import Callable
 
 import numpy as np
-from matplotlib.backends import _backend_tk
 from matplotlib.backends.backend_tkagg import FigureCanvasTkAgg
 from matplotlib.figure import Figure
-from matplotlib.transforms import Bbox, BboxBase
 from numpy.typing import NDArray
 
+from gui.pixels import put
 from gui.view2d.letters import Letters
 from gui.view2d.pen import Box, Pen, apart
 
@@ -20,10 +19,6 @@ _FOR_FIGURES = (
     *("<Motion>", "<Key>", "<KeyRelease>", "<Enter>", "<Leave>", "<Button-4>", "<Button-5>"),
     *(f"<{kind}-{k}>" for kind in ("Button", "Double-Button", "ButtonRelease") for k in (1, 2, 3)),
 )
-
-#: Where Tk finds red, green, blue and how opaque a pixel is: beyond its four bytes, which means that it is. Tk looks at every pixel of
-#: the whole picture for some that are not, each time that a part of it changes (0.25 ms at 900 x 700, and twice for each pixel changed).
-_OPAQUE = (0, 1, 2, 4)
 
 
 class Surface(FigureCanvasTkAgg):
@@ -81,7 +76,7 @@ class Surface(FigureCanvasTkAgg):
         self._kept = self.picture.copy()
         self._touched, self._unshown = [], []
         self._over()
-        self.blit()
+        put(self._tkphoto, self.picture)
 
     def draw_idle(self) -> None:
         """Draw everything, soon; many calls are one."""
@@ -110,18 +105,12 @@ class Surface(FigureCanvasTkAgg):
         if self._showing is None:
             self._show()
 
-    def blit(self, bbox: BboxBase | None = None) -> None:
-        """Bring the picture, or a box of it, to the screen."""
-        _backend_tk.blit(self._tkphoto, self.get_renderer().buffer_rgba(), _OPAQUE, bbox=bbox)
-
     def _show(self) -> None:
         """One of the boxes that changed, then the next: Tk draws all that lies between those that it is given at once."""
         self._showing = None
         if self._unshown:
             left, top, right, bottom = self._pixels(self._unshown.pop())
-            if right > left and bottom > top:
-                height = self.size[1]
-                self.blit(Bbox([[left, height - bottom], [right, height - top]]))
+            put(self._tkphoto, self.picture, rows=(top, bottom), columns=(left, right))
         if self._unshown:
             self._showing = self.widget.after_idle(self._show)
 

@@ -78,7 +78,7 @@ class Painter:
         coarser: int = 1,
         spots: Spots | None = None,
     ) -> Bytes:
-        """A picture (height, width, 3), overwritten by the next.
+        """A picture (height, width, 3), overwritten by the next; a view of `pixels`.
 
         With `sharper` 2 it has smooth edges for four times the pixels; with `coarser` 2 it has half as many rows and columns, rounded
         up, and is meant to be enlarged. What is asked of it later is in the camera's pixels all the same.
@@ -91,16 +91,16 @@ class Painter:
             self._colours(solid, camera, paint, spots)
             self._shaded = (paint, spots)
         self.strokes = strokes
-        np.copyto(self._image, self._base)
+        np.copyto(self.pixels, self._base)
         a, b = self._placed(strokes.a), self._placed(strokes.b)
         stroke(a, b, strokes.item, strokes.width / np.float32(coarser), self.depth, self.slack, sharper, self._cover, self._owner)
-        lay_over(self._cover, self._owner, strokes.colour, self._image)
-        return self._image
+        lay_over(self._cover, self._owner, strokes.colour, self.pixels)
+        return self.pixels[:, :, :3]
 
     def face_at(self, column: int, row: int) -> int:
         """Face of the document's mesh at a pixel of the picture; -1 where there is none."""
         column, row = column // self.coarser, row // self.coarser
-        if self._solid is None or not (0 <= row < self._image.shape[0] and 0 <= column < self._image.shape[1]):
+        if self._solid is None or not (0 <= row < self.pixels.shape[0] and 0 <= column < self.pixels.shape[1]):
             return -1
         t = int(self.face[row * self.sharper, column * self.sharper])
         return int(self._solid.name[t]) if t >= 0 else -1
@@ -119,7 +119,7 @@ class Painter:
     def depth_at(self, column: int, row: int) -> float:
         """Depth of the surface at a pixel, mm; infinite where there is none."""
         column, row = column // self.coarser, row // self.coarser
-        if not (0 <= row < self._image.shape[0] and 0 <= column < self._image.shape[1]):
+        if not (0 <= row < self.pixels.shape[0] and 0 <= column < self.pixels.shape[1]):
             return float("inf")
         return float(self.depth[row * self.sharper, column * self.sharper])
 
@@ -155,7 +155,9 @@ class Painter:
 
     def _colours(self, solid: Solid, camera: Camera, paint: Paint, spots: Spots | None) -> None:
         height, width = self._base.shape[:2]
-        self._base.reshape(height, -1)[:] = np.tile(paint.background, width)  # whole rows: several times as fast as pixel by pixel
+        self._base.reshape(height, -1)[:] = np.tile(
+            np.append(paint.background, np.uint8(255)), width
+        )  # whole rows: several times as fast as pixel by pixel
         box = self._box(solid, camera)
         look = paint.colour, paint.tint, paint.tints
         if self.sharper == 1 and len(solid.F) > _MANY and paint.flat is None:
@@ -190,9 +192,10 @@ class Painter:
         if self.face.shape != (height * sharper, width * sharper) or self.sharper != sharper:
             self.face = np.full((height * sharper, width * sharper), -1, dtype=np.int32)
             self.depth = np.full(self.face.shape, np.inf, dtype=np.float32)
-        if not hasattr(self, "_image") or self._image.shape[:2] != (height, width):
-            self._base: Bytes = np.zeros((height, width, 3), dtype=np.uint8)
-            self._image: Bytes = np.zeros_like(self._base)
+        if not hasattr(self, "pixels") or self.pixels.shape[:2] != (height, width):
+            # Four bytes a pixel, the last of which says nothing: so the window system takes them as they are.
+            self._base: Bytes = np.full((height, width, 4), 255, dtype=np.uint8)
+            self.pixels: Bytes = np.full_like(self._base, 255)
             self._cover: Bytes = np.zeros((height, width), dtype=np.uint8)
             self._owner: Int32 = np.full((height, width), -1, dtype=np.int32)
 
@@ -212,4 +215,4 @@ def warm() -> None:
     )
     painter.is_seen(camera.to_screen(mesh.V))
     light = np.zeros((1, 2), np.float32)
-    shade_quickly(painter.face, light, np.zeros(1, np.int32), paint.colour, *plain[:2], (0, 16, 0, 16), np.zeros((16, 16, 3), np.uint8))
+    shade_quickly(painter.face, light, np.zeros(1, np.int32), paint.colour, *plain[:2], (0, 16, 0, 16), np.zeros((16, 16, 4), np.uint8))

@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
-from PIL import Image, ImageTk
 
 from gui.state.derived import Derived
 from gui.state.selection import NOTHING, Target
@@ -24,7 +23,7 @@ from gui.view3d.gestures import Gestures
 from gui.view3d.hit import Hit, hit
 from gui.view3d.labels import piece_labels, seam_labels, sensor_label
 from gui.view3d.painter import Painter, warm
-from gui.view3d.patch import differing
+from gui.view3d.plate import Plate
 from gui.view3d.scene import Scene
 from gui.view3d.solid import Solid
 from skinfab.mesh.model import Mesh
@@ -98,10 +97,7 @@ class View3D(ttk.Frame):
         self.pictures, self.last_picture = 0, 0.0
         self.canvas = tk.Canvas(self, name="canvas", highlightthickness=1, borderwidth=0, takefocus=True, width=400, height=300)
         self.canvas.pack(fill="both", expand=True)
-        self._photo: ImageTk.PhotoImage | None = None
-        self._small: ImageTk.PhotoImage | None = None
-        self._large: tk.PhotoImage | None = None
-        self._enlarged = np.zeros((0, 0, 3), dtype=np.uint8)
+        self._plates: dict[int, Plate] = {}
         self._picture = self.canvas.create_image(0, 0, anchor="nw", tags=("picture",))
         self._furniture = Furniture(self.canvas, dpi=self.dpi)
         self._mesh: Mesh | None = None
@@ -239,7 +235,8 @@ class View3D(ttk.Frame):
             return
         self._take(skin, width, height)
         start = time.perf_counter()
-        self._paste(self._paint(skin))
+        self._paint(skin)
+        self._paste()
         self._label(skin)
         self.last_picture = time.perf_counter() - start
         self.pictures += 1
@@ -257,7 +254,7 @@ class View3D(ttk.Frame):
             if self._whole:
                 self.camera = self.camera.whole()
 
-    def _paint(self, skin: Skin) -> np.ndarray[Any, np.dtype[np.uint8]]:
+    def _paint(self, skin: Skin) -> None:
         assert self._solid is not None
         camera, paint = self.camera, self.scene.paint(skin)
         strokes, spots = self.scene.strokes(skin, camera.scale), self.scene.spots
@@ -266,36 +263,14 @@ class View3D(ttk.Frame):
         fine = not self._moving and 4 * camera.width * camera.height <= _SAMPLES
         coarse = self._moving and camera.width * camera.height > _COARSE
         start = time.perf_counter()
-        image = self.painter.draw(solid, camera, paint, strokes, sharper=2 if fine else 1, coarser=2 if coarse else 1, spots=spots)
+        self.painter.draw(solid, camera, paint, strokes, sharper=2 if fine else 1, coarser=2 if coarse else 1, spots=spots)
         if self._moving and solid is self._solid:
             self._slow = time.perf_counter() - start > _SLOW
-        return image
 
-    def _paste(self, image: np.ndarray[Any, np.dtype[np.uint8]]) -> None:
-        if self.painter.coarser > 1:
-            self._enlarge(image, self.painter.coarser)
-            return
-        height, width = image.shape[:2]
-        if self._photo is None or (self._photo.width(), self._photo.height()) != (width, height):
-            self._photo = ImageTk.PhotoImage("RGB", (width, height), master=self.canvas)
-        self._photo.paste(Image.fromarray(image))
-        self.canvas.itemconfigure(self._picture, image=self._photo, state="normal")
-
-    def _enlarge(self, image: np.ndarray[Any, np.dtype[np.uint8]], times: int) -> None:
-        """Show a coarse picture, each pixel as several."""
-        height, width = image.shape[:2]
-        if self._small is None or (self._small.width(), self._small.height()) != (width, height):
-            self._small = ImageTk.PhotoImage("RGB", (width, height), master=self.canvas)
-            self._large = tk.PhotoImage(width=times * width, height=times * height, master=self.canvas)
-            self._enlarged = np.zeros((0, 0, 3), dtype=np.uint8)
-        self._small.paste(Image.fromarray(image))
-        # Most of what it takes is the way to the screen: only what differs goes there.
-        low, high = differing(self._enlarged, image)
-        place = "-from", low[1], low[0], high[1], high[0], "-to", times * low[1], times * low[0]
-        if high > low:
-            self.canvas.tk.call(self._large, "copy", str(self._small), *place, "-zoom", times, "-compositingrule", "set")
-        self._enlarged = image.copy()
-        self.canvas.itemconfigure(self._picture, image=self._large, state="normal")
+    def _paste(self) -> None:
+        times = self.painter.coarser
+        plate = self._plates.setdefault(times, Plate(self.canvas, times=times))
+        self.canvas.itemconfigure(self._picture, image=plate.show(self.painter.pixels), state="normal")
 
     def _label(self, skin: Skin) -> None:
         camera, painter, scene = self.camera, self.painter, self.scene

@@ -334,7 +334,7 @@ def test_a_large_picture_is_coarse_while_it_moves_and_fine_at_rest(window, monke
     assert view.painter.coarser == 1
     view.move(view.camera.panned(0, 0))
     window.root.update()
-    assert view.painter.coarser == 2 and view.painter._image.shape[1] == -(-view.camera.width // 2)
+    assert view.painter.coarser == 2 and view.painter.pixels.shape[1] == -(-view.camera.width // 2)
     assert view.hit_at(*at) is not None and np.abs(np.subtract(window.colour(at), before)).max() < 30
     view.move(view.camera.panned(40, 0))
     window.root.update()
