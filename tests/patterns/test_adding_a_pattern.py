@@ -4,6 +4,7 @@ import os
 import re
 import subprocess
 import sys
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import pytest
@@ -35,29 +36,35 @@ def run(environment: dict[str, str], *arguments: str) -> subprocess.CompletedPro
     return subprocess.run([sys.executable, *arguments], capture_output=True, text=True, cwd=ROOT, env=environment, timeout=600)
 
 
-def skinfab(environment: dict[str, str], *arguments: object) -> subprocess.CompletedProcess[str]:
-    program = "import sys, drop_in; from skinfab.cli.main import main; sys.exit(main(sys.argv[1:]))"
-    return run(environment, "-c", program, *map(str, arguments))
+def skinfab(environment: dict[str, str], *commands: Sequence[object]) -> subprocess.CompletedProcess[str]:
+    """One `skinfab` after the other in one process, as long as they go well."""
+    program = "import sys, drop_in; from skinfab.cli.main import main; sys.exit(next((bad for c in {!r} if (bad := main(c))), 0))"
+    return run(environment, "-c", program.format([[str(word) for word in command] for command in commands]))
 
 
 def test_without_the_file_there_is_no_such_pattern() -> None:
     assert "contact-ring" not in PATTERNS
 
 
-def test_the_command_line_lists_it(dropped: dict[str, str]) -> None:
-    said = skinfab(dropped, "place", "--patterns").stdout
-    assert "\ncontact-spiral (contact)" in f"\n{said}" and "contact-ring (contact): One ring between two leads." in said
-    assert re.search(r"^  d     mm      Diameter of the ring; at least 2 b\. Must be given\.$", said, re.M)
-
-
-def test_a_sensors_file_takes_it_as_far_as_the_gcode(dropped: dict[str, str], tmp_path: Path) -> None:
+def test_the_command_line_takes_it_as_far_as_the_gcode(
+    dropped: dict[str, str], cut_once: Callable[[str, Path], Path], tmp_path: Path
+) -> None:
     asked = next(text for text in re.findall(r"```toml\n(.*?)```", PAGE, re.S) if "contact-ring" in text)
     (tmp_path / "ring.toml").write_text(asked)
-    made = skinfab(dropped, "make", ROOT / "meshes/cube.obj", "-o", tmp_path / "out", "--sensors", tmp_path / "ring.toml")
+    document = cut_once("cube", tmp_path / "a.skin")
+    made = skinfab(
+        dropped,
+        ["place", "--patterns"],
+        ["place", document, "--sensors", tmp_path / "ring.toml"],
+        ["place", document, "--list"],
+        ["gcode", document, "-o", tmp_path / "out"],
+    )
     assert made.returncode == 0, made.stderr
-    assert "G3 " in (tmp_path / "out/gcode/P1.gcode").read_text()
-    listed = skinfab(dropped, "place", tmp_path / "out/skin.skin", "--list")
-    assert listed.stdout.startswith("C1: contact-ring on P1 at ")
+    said = made.stdout
+    assert "\ncontact-spiral (contact)" in f"\n{said}" and "contact-ring (contact): One ring between two leads." in said
+    assert re.search(r"^  d     mm      Diameter of the ring; at least 2 b\. Must be given\.$", said, re.M)
+    assert "\nC1: contact-ring on P1 at " in said
+    assert "G3 " in (tmp_path / "out/P1.gcode").read_text()
 
 
 def test_the_property_tests_run_over_it(dropped: dict[str, str]) -> None:
