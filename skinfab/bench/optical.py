@@ -7,16 +7,15 @@ from pathlib import Path
 from typing import Any
 
 from skinfab.bench.flatten import REPEATS, read_csv, write_csv
-from skinfab.bench.optical_contour import FRAMES, IMPROVED, PUBLISHED, RUNS, SEEDS, learned, measure_rates, measure_shapes
+from skinfab.bench.optical_contour import FRAMES, IMPROVED, PUBLISHED, ROUNDS, RUNS, SEEDS, learned, measure_rates, measure_shapes
+from skinfab.bench.optical_depth import measure_depths
 from skinfab.bench.timing import one_processor
 from skinfab.progress import Progress, part_of, silent
 
-#: What to know of the published way where a frame's cost is told.
-TOO_FEW = "127 pins are too few for the published moments, which five dilations merge at rest: shapes are followed with the seed's 271"
-
 
 def run(folder: Path, *, repeats: int = REPEATS, seeds: int = SEEDS, runs: int = RUNS, progress: Progress = silent) -> dict[str, Any]:
-    """Measure, and write optical_shapes.csv, optical_contour.csv and .png, optical_reconstruction.png, the frames' files, and optical.txt.
+    """Measure, and write optical_shapes.csv, optical_contour.csv and .png, optical_reconstruction.png, optical_depth.csv, the frames' files
+    and optical.txt.
 
     Parameters
     ----------
@@ -25,36 +24,40 @@ def run(folder: Path, *, repeats: int = REPEATS, seeds: int = SEEDS, runs: int =
     repeats : int
         Of what is timed.
     seeds : int
-        For each point of the chart.
+        For each point of the chart, and round each shape by the improved way.
     runs : int
-        Round each shape.
+        Round each shape by the published way.
     progress : Progress
 
     Returns
     -------
     dict
-        "sentence", "notes" (what to know of the measurement), "shapes", "contours" and "frames".
+        "sentence", "notes" (what to know of the measurement), "shapes", "contours", "depths" and "frames".
     """
     from skinfab.bench.optical_chart import draw_rates, draw_reconstruction
     from skinfab.bench.optical_frame import frame
     from skinfab.files import atomic_write
     from skinfab.fingertip.optical.simulator import paper_fingertip
 
-    notes = ["a simulated fingertip of 271 pins; sides are true / the seed's table 1 / found, mm"]
+    notes = [
+        "a simulated fingertip of 271 pins; sides are true / the seed's table 1 / found, mm; areas are of the seed's table 2, cm2",
+        f"a robot that has not closed a contour after {ROUNDS} times its length is stopped",
+    ]
     with one_processor() as alone:
         notes += [] if alone else ["this system cannot keep a process on one processor"]
         feel = learned(paper_fingertip())
-        write_csv(measure_shapes(feel, runs=runs, progress=part_of(progress, 0.05, 0.3)), folder / "optical_shapes.csv")
-        write_csv(measure_rates(feel, seeds=seeds, progress=part_of(progress, 0.3, 0.9)), folder / "optical_contour.csv")
+        write_csv(measure_shapes(feel, runs=runs, seeds=seeds, progress=part_of(progress, 0.05, 0.3)), folder / "optical_shapes.csv")
+        write_csv(measure_rates(feel, seeds=seeds, progress=part_of(progress, 0.3, 0.88)), folder / "optical_contour.csv")
         draw_reconstruction(feel, folder / "optical_reconstruction.png")
+        write_csv(measure_depths(progress=part_of(progress, 0.88, 0.9)), folder / "optical_depth.csv")
     # From here on only what the tables hold is used, so that chart and sentence cannot say anything else.
-    made, rates = read_csv(folder / "optical_shapes.csv"), read_csv(folder / "optical_contour.csv")
+    made, rates, deep = (read_csv(folder / f"optical_{name}.csv") for name in ("shapes", "contour", "depth"))
     draw_rates(rates, folder / "optical_contour.png")
     said = sentence(made, rates)
     cost = frame(folder, repeats=repeats, progress=part_of(progress, 0.9, 1.0))
-    said, notes = f"{said} {cost['sentence']}", [*notes, *cost["notes"], TOO_FEW]
+    said, notes = f"{said} {cost['sentence']}", [*notes, *cost["notes"]]
     atomic_write(folder / "optical.txt", "\n".join([said, *notes]) + "\n")
-    return {"sentence": said, "notes": notes, "shapes": made, "contours": rates, "frames": cost["rows"]}
+    return {"sentence": said, "notes": notes, "shapes": made, "contours": rates, "depths": deep, "frames": cost["rows"]}
 
 
 def sentence(made: Sequence[Mapping[str, Any]], rates: Sequence[Mapping[str, Any]]) -> str:
@@ -63,8 +66,14 @@ def sentence(made: Sequence[Mapping[str, Any]], rates: Sequence[Mapping[str, Any
     for name in (PUBLISHED, IMPROVED):
         rows = [row for row in made if row["method"] == name]
         right, runs = (sum(row[key] for row in rows) for key in ("right", "runs"))
-        off, side = ([row[key] for row in rows if row["right"]] for key in ("off_mm", "side_error_pc"))
-        worst = f", at most {max(side):.1f} % off in a side and {max(off):.2f} mm off the true edge on average" if off else ""
+        keys = ("off_mm", "worst_mm", "side_error_pc", "area_error_pc")
+        off, far, side, area = ([row[key] for row in rows if row["right"]] for key in keys)
+        worst = (
+            f", at most {max(side):.1f} % off in a side, {max(area):.1f} % in an area and {max(off):.2f} mm off the true edge on average "
+            f"({max(far):.1f} mm at one point)"
+            if off
+            else ""
+        )
         words.append(f"{name} close {right} of {runs} contours{worst}")
     first = rates[0]
     usual = {row["method"]: row for row in rates if (row["step_mm"], row["noise_mm"]) == (first["step_mm"], first["noise_mm"])}

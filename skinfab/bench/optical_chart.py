@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from skinfab.bench.charts import png
-from skinfab.bench.optical_contour import FRAMES, IMPROVED, PUBLISHED, ways
+from skinfab.bench.optical_contour import FRAMES, IMPROVED, PUBLISHED, patience, ways
 from skinfab.files import atomic_write
 from skinfab.fingertip.optical.follower import Feel
 from skinfab.fingertip.optical.rig import Rig
@@ -61,9 +61,8 @@ def draw_reconstruction(feel: Feel, path: Path, *, seed: int = 0) -> None:
     figure.suptitle("Shapes reconstructed by following their edges (simulated)", fontsize=11)
     panels = figure.subplots(2, 3)
     for line, name in zip(panels, (PUBLISHED, IMPROVED), strict=True):
-        follow = ways(feel)[name]
         for axes, shape in zip(line, shapes(), strict=True):
-            trace = follow(Rig(shape.plate, tip, shape.plate.start, seed=seed))
+            trace = ways(feel, most_frames=patience(shape, 1.0))[name](Rig(shape.plate, tip, shape.plate.start, seed=seed))
             C = shape.plate.outline()
             axes.fill(C[:, 0], C[:, 1], color="#dddddd", label="true plate")
             axes.plot(*trace.edge.T, ".-", color=_COLOURS[name], ms=2, lw=0.6, label="trace")

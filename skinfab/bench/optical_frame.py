@@ -1,7 +1,7 @@
 """Ways to read an edge from a frame of the optical fingertip: processor time against errors of offset, depth and angle (simulated).
 
-All learn from the same images of one fingertip and are judged on others. The published way finds a good feature or
-none, and is judged where it finds one.
+All that learn do so from the same images of one fingertip and are judged on others. The published way finds a good feature or
+none, and is judged where it finds one; it merges pins, and so has the seed's fingertip of 271, on the same edges.
 """
 
 from __future__ import annotations
@@ -21,11 +21,11 @@ from skinfab.bench.flatten import REPEATS, read_csv, write_csv
 from skinfab.bench.timing import one_processor
 from skinfab.fingertip.optical.edge import Edge
 from skinfab.fingertip.optical.judge import off_by
-from skinfab.fingertip.optical.labelled import labelled
+from skinfab.fingertip.optical.labelled import FOLLOWED_MM, labelled
 from skinfab.fingertip.optical.pins import Image, Tracked
 from skinfab.fingertip.optical.published import feature
 from skinfab.fingertip.optical.regress import Examples, learn
-from skinfab.fingertip.optical.simulator import Fingertip
+from skinfab.fingertip.optical.simulator import Fingertip, paper_fingertip
 from skinfab.progress import Progress, silent
 
 FloatArray = NDArray[np.float64]
@@ -78,7 +78,11 @@ def frame(folder: Path, *, repeats: int = REPEATS, progress: Progress = silent) 
     from skinfab.bench.optical_frame_chart import draw
     from skinfab.files import atomic_write
 
-    notes = [f"one simulated fingertip of {len(Fingertip().rest)} pins, {Fingertip().dome.size_px} px, edges within {REACH_MM:g} mm"]
+    kinds = (f"{len(tip.rest)} pins and {tip.dome.size_px} px" for tip in (Fingertip(), paper_fingertip()))
+    notes = [
+        f"simulated fingertips: one of {', the published moments on one of '.join(kinds)}, which they need: of 127 they merge all at rest",
+        f"edges within {REACH_MM:g} mm, pressed {FOLLOWED_MM[0]:g} to {FOLLOWED_MM[1]:g} mm deep",
+    ]
     with one_processor() as alone:
         notes += [] if alone else ["this system cannot keep a process on one processor"]
         write_csv(measure(repeats=repeats, progress=progress), folder / "optical_frame.csv")
@@ -93,11 +97,14 @@ def frame(folder: Path, *, repeats: int = REPEATS, progress: Progress = silent) 
 def measure(*, counts: Sequence[int] = COUNTS, judged: int = JUDGED, repeats: int = REPEATS, progress: Progress = silent) -> list[Row]:
     """A row for every way and number of images."""
     tip = Fingertip()
-    seen = [(one.image, one.edge) for one in labelled(tip, max(counts), reach_mm=REACH_MM, seed=1)]
-    other = [(one.image, one.edge) for one in labelled(tip, judged, reach_mm=REACH_MM, seed=2)]
+    seen = [(one.image, one.edge) for one in labelled(tip, max(counts), reach_mm=REACH_MM, depths_mm=FOLLOWED_MM, seed=1)]
+    other, dense = (
+        [(one.image, one.edge) for one in labelled(each, judged, reach_mm=REACH_MM, depths_mm=FOLLOWED_MM, seed=2)]
+        for each in (tip, paper_fingertip())
+    )
     every = Examples.of([image for image, _ in seen], [edge for _, edge in seen], rest=tip.image(tip.rest))
     small = Examples(every.pins, np.array([shrunken(image) for image, _ in seen]), np.zeros((len(seen), 1), dtype=bool), every.truth)
-    rows = [judge(PUBLISHED, 0, as_published, other, repeats)]
+    rows = [judge(PUBLISHED, 0, as_published, dense, repeats)]
     for j, count in enumerate(counts):
         progress(j / len(counts), f"{count} images")
         some = np.arange(count)
@@ -112,7 +119,7 @@ def as_published(image: Image) -> Edge | None:
     if found is None or not found.good:
         return None
     x, y = found.centroid
-    off = -(x * math.cos(found.angle_rad) + y * math.sin(found.angle_rad)) / Fingertip().dome.px_per_mm
+    off = -(x * math.cos(found.angle_rad) + y * math.sin(found.angle_rad)) / paper_fingertip().dome.px_per_mm
     return Edge(off, found.angle_rad)
 
 

@@ -11,8 +11,10 @@ from skinfab.cli import steps
 
 def add_options(p: argparse.ArgumentParser) -> None:
     """How many contours are followed, and where the results go."""
-    p.add_argument("--seeds", metavar="N", type=steps.counting, default=20, help="contours for each point of the chart (default: 20)")
-    p.add_argument("--runs", metavar="N", type=steps.counting, default=5, help="round each of the seed's shapes (default: 5)")
+    p.add_argument(
+        "--seeds", metavar="N", type=steps.counting, default=20, help="contours a point, and a shape by the improved way (default: 20)"
+    )
+    p.add_argument("--runs", metavar="N", type=steps.counting, default=5, help="round each of the seed's shapes as published (default: 5)")
     p.add_argument("-o", "--output", metavar="DIR", type=Path, required=True, help="folder for tables, charts and a sentence")
     p.add_argument("--json", action="store_true", help="print one JSON object and nothing else")
     p.set_defaults(run=run)

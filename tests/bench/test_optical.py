@@ -9,7 +9,7 @@ import pytest
 
 from skinfab.bench.optical import sentence
 from skinfab.bench.optical_chart import draw_rates
-from skinfab.bench.optical_contour import FRAMES, IMPROVED, PUBLISHED, RateRow, measure_rates, runs_of, shape_row
+from skinfab.bench.optical_contour import FRAMES, IMPROVED, PUBLISHED, Made, RateRow, measure_rates, runs_of, shape_row
 from skinfab.fingertip.optical.edge import Edge
 from skinfab.fingertip.optical.follower import Trace
 from skinfab.fingertip.optical.shapes import Shape, reconstruct, shapes
@@ -35,13 +35,14 @@ def around(shape: Shape, scale: float, *, closed: bool = True) -> Trace:
 
 def test_a_row_tells_errors_and_spread_of_the_runs_that_are_right_alone() -> None:
     shape = shapes()[0]
-    made = [reconstruct(around(shape, scale), shape, lines=True) for scale in (1.0, 1.02)]
-    lost = reconstruct(around(shape, 0.2, closed=False), shape, lines=True)
+    made = [Made(reconstruct(around(shape, scale), shape, lines=True), scale) for scale in (1.0, 1.02)]
+    lost = Made(reconstruct(around(shape, 0.2, closed=False), shape, lines=True), 30.0)
     row = shape_row(shape, IMPROVED, [*made, lost, None])
     assert (row.right, row.runs, row.simulated) == (2, 4, True)
     assert row.side_error_pc == pytest.approx(1, abs=0.01) and row.repeat_pc == pytest.approx(2 / 1.01, abs=0.01)
     assert row.area_error_pc == pytest.approx(100 * (1.02**2 - 1), abs=0.01)
-    assert row.sides.split()[0] == "108/104/109.1"
+    assert row.sides.split()[0] == "108/104/109.1" and row.worst_mm == 1.02
+    assert row.area_cm2 == pytest.approx(row.true_cm2 * (1 + 1.02**2) / 2, rel=1e-3) and (row.seed_cm2, row.humans_cm2) == (83.57, 94.54)
     none = shape_row(shape, PUBLISHED, [lost, None])
     assert none.right == 0 and math.isnan(none.side_error_pc) and none.sides == ""
 
@@ -52,7 +53,7 @@ def test_an_edge_that_is_never_felt_closes_nothing() -> None:
 
 
 def test_rates_are_counted_by_step_with_an_interval(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("skinfab.fingertip.optical.follower.MOST_FRAMES", 12)
+    monkeypatch.setattr("skinfab.bench.optical_contour.MOST_FRAMES", 12)
     rows = measure_rates(lambda _: Edge(0.0, 0.0, confidence=0.0), steps_mm=(1.0,), noises_mm=(), seeds=2)
     assert [(row.method, row.right, row.seeds) for row in rows] == [(PUBLISHED, 0, 2), (FRAMES, 0, 2), (IMPROVED, 0, 2)]
     assert all(row.low == 0 < row.high < 1 and math.isnan(row.off_mm) for row in rows)
@@ -60,7 +61,7 @@ def test_rates_are_counted_by_step_with_an_interval(monkeypatch: pytest.MonkeyPa
 
 def test_the_sentence_and_the_chart_are_of_the_tables(tmp_path: Path) -> None:
     shape = shapes()[-1]
-    good = shape_row(shape, IMPROVED, [reconstruct(around(shape, 1.0), shape, lines=True)])
+    good = shape_row(shape, IMPROVED, [Made(reconstruct(around(shape, 1.0), shape, lines=True), 0.0)])
     bad = shape_row(shape, PUBLISHED, [None])
     table = [asdict(row) for row in RATES]
     said = sentence([asdict(bad), asdict(good)], table)

@@ -21,7 +21,7 @@ def test_images_and_their_poses_are_written_and_say_that_they_are_simulated(tmp_
     rows = list(csv.DictReader((tmp_path / "a/targets.csv").read_text().splitlines()))
     assert len(rows) == 12 and {row["simulated"] for row in rows} == {"1"} and len({row["group"] for row in rows}) == 2
     for row in rows:
-        assert abs(float(row["offset_mm"])) <= 8 and 1.6 <= float(row["depth_mm"]) <= 2.4 and abs(float(row["angle_deg"])) <= 180
+        assert abs(float(row["offset_mm"])) <= 8 and 0.3 <= float(row["depth_mm"]) <= 2.4 and abs(float(row["angle_deg"])) <= 180
         assert b"simulated: true" in (tmp_path / "a" / row["image"]).read_bytes()[:80]
         assert cv2.imread(str(tmp_path / "a" / row["image"]), cv2.IMREAD_GRAYSCALE).shape == (240, 240)
 

@@ -114,7 +114,7 @@ def quantised(v: FloatArray) -> FloatArray:
     return float(np.linalg.norm(v)) * np.array([math.cos(turn), math.sin(turn)])
 
 
-def follow_published(robot: Robot, *, step_mm: float = STEP_MM, plate_is_white: bool = False) -> Trace:
+def follow_published(robot: Robot, *, step_mm: float = STEP_MM, plate_is_white: bool = False, most_frames: int = MOST_FRAMES) -> Trace:
     """Follow an edge as the seed does (section 2.1 and figure 6).
 
     Parameters
@@ -124,6 +124,8 @@ def follow_published(robot: Robot, *, step_mm: float = STEP_MM, plate_is_white: 
     step_mm : float
     plate_is_white : bool
         See `published.feature`.
+    most_frames : int
+        After which it is stopped.
 
     Raises
     ------
@@ -131,7 +133,7 @@ def follow_published(robot: Robot, *, step_mm: float = STEP_MM, plate_is_white: 
         The step is not a positive length, or the frames show no pins.
     """
     walk, missing = _Walk(robot, _length(step_mm)), 0
-    while walk.frames < MOST_FRAMES and missing < PATIENCE:
+    while walk.frames < most_frames and missing < PATIENCE:
         found = feature(walk.look(), plate_is_white=plate_is_white)
         if found is not None and found.good:
             walk.recoveries += missing > 0
@@ -153,7 +155,14 @@ def follow_published(robot: Robot, *, step_mm: float = STEP_MM, plate_is_white: 
 
 
 def follow_pose(
-    robot: Robot, feel: Feel, *, step_mm: float = STEP_MM, quantise: bool = False, memory: bool = True, palpation: bool = True
+    robot: Robot,
+    feel: Feel,
+    *,
+    step_mm: float = STEP_MM,
+    quantise: bool = False,
+    memory: bool = True,
+    palpation: bool = True,
+    most_frames: int = MOST_FRAMES,
 ) -> Trace:
     """Follow an edge by its pose, counter-clockwise round the plate.
 
@@ -169,6 +178,8 @@ def follow_pose(
     memory, palpation : bool
         Whether the last points of the edge are used, and whether a lost edge is felt for: without both, the next step depends on this
         frame alone.
+    most_frames : int
+        After which it is stopped.
 
     Raises
     ------
@@ -176,7 +187,7 @@ def follow_pose(
         The step is not a positive length.
     """
     walk = _Walk(robot, _length(step_mm))
-    while walk.frames < MOST_FRAMES:
+    while walk.frames < most_frames:
         found = _believed(feel(walk.look()), walk, memory=memory)
         if found is None and palpation:
             found = _palpate(walk, feel, memory=memory)

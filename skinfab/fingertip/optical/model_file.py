@@ -14,7 +14,7 @@ from skinfab.fingertip.optical.regress import EdgeModel
 from skinfab.fingertip.saved import load_model, save_model
 
 KIND = "optical edge"
-_ARRAYS = ("mean", "basis", "support", "weights", "centre", "usual")
+_ARRAYS = ("mean", "basis", "support", "weights", "centre", "spacing", "wrong", "usual")
 
 
 def save_edge(path: str | Path, model: EdgeModel, made_from: Mapping[str, Any]) -> None:
@@ -45,11 +45,13 @@ def load_edge(path: str | Path) -> tuple[EdgeModel, Mapping[str, Any]]:
     try:
         height, width = (int(n) for n in facts["shape"])
         pins = Pins(a["rest"], (height, width), int(facts["level"]))
-        mean, basis, support, weights, centre, usual = (a[name] for name in _ARRAYS)
-        model = EdgeModel(pins, mean, basis, support, weights, centre, float(facts["gamma"]), float(facts["ridge"]), usual)
+        mean, basis, support, weights, centre, spacing, wrong, usual = (a[name] for name in _ARRAYS)
+        model = EdgeModel(pins, mean, basis, support, weights, centre, float(facts["gamma"]), float(facts["ridge"]), spacing, wrong, usual)
         made_from = dict(facts["made_from"])
         (k, two), (n, d), targets = a["rest"].shape, a["support"].shape, a["weights"].shape[1]
-        fits = two == 2 and a["mean"].shape == (2 * k,) and a["basis"].shape == (2 * k, d) and a["usual"].shape == (2,)
+        fits = two == 2 and a["mean"].shape == (2 * k,) and a["basis"].shape == (2 * k, d) and a["usual"].shape == (3,)
+        fits = fits and a["spacing"].shape == a["wrong"].shape == (n,) and model.gamma > 0 and model.ridge > 0
+        fits = fits and bool((a["spacing"] > 0).all() and ((a["wrong"] >= 0) & (a["wrong"] <= 1)).all())
         fits = fits and len(a["weights"]) == n and a["centre"].shape == (targets,) and targets in (3, 4)
         fits = fits and bool((a["rest"] >= 0).all() and (a["rest"] <= np.array([width, height])).all() and (a["usual"] > 0).all())
     except (KeyError, TypeError, ValueError, IndexError) as fault:

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import cv2
 import numpy as np
@@ -58,6 +59,11 @@ def level_of(images: Sequence[Image]) -> int:
     return int(min(max(found, 1), 254))
 
 
+def label_type(lit: NDArray[Any]) -> int:
+    """OpenCV's type for labels of components: short ones are written three times as fast, and there are no more than lit pixels."""
+    return cv2.CV_16U if cv2.countNonZero(lit) < 1 << 16 else cv2.CV_32S
+
+
 def find_tips(image: Image, level: int) -> FloatArray:
     """Middles of the bright spots of an image, (k, 2) px (column, row), weighted by how far each pixel is above `level`.
 
@@ -75,15 +81,15 @@ def find_tips(image: Image, level: int) -> FloatArray:
     >>> find_tips(image, 100).tolist()
     [[21.0, 10.5]]
     """
-    lit = cv2.threshold(image, level, 255, cv2.THRESH_BINARY)[1]
+    lit = cv2.threshold(image, level, 1, cv2.THRESH_BINARY)[1]
     # Statistics by OpenCV visit every pixel again; those of the tips are few.
-    count, label = cv2.connectedComponents(lit, connectivity=4, ltype=cv2.CV_32S)
+    count, label = cv2.connectedComponents(lit, connectivity=4, ltype=label_type(lit))
     if count == 1:
         return np.empty((0, 2))
-    at = np.flatnonzero(lit)
+    at = np.flatnonzero(lit.view(np.bool_))  # of bools it is several times faster than of bytes
     of = label.ravel()[at]
     area = np.bincount(of, minlength=count)
-    usual = float(np.median(area[1:]))
+    usual = float(np.partition(area[1:], (count - 1) // 2)[(count - 1) // 2])
     right = (area >= PIN_AREA[0] * usual) & (area <= PIN_AREA[1] * usual)
     right[0] = False
     weight = image.ravel()[at].astype(float) - level

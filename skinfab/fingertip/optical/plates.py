@@ -221,5 +221,7 @@ class Moved:
 
     def distance(self, X: FloatArray) -> FloatArray:
         """Signed distance of points (..., 2) in the fingertip's frame, mm."""
+        if not self.turn_rad:
+            return self.plate.distance(X + np.asarray(self.at, dtype=float))
         c, s = math.cos(self.turn_rad), math.sin(self.turn_rad)
         return self.plate.distance(X @ np.array([[c, s], [-s, c]]) + np.asarray(self.at, dtype=float))

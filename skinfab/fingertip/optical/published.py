@@ -15,8 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skinfab.errors import InputError
-
-Image = NDArray[np.uint8]
+from skinfab.fingertip.optical.pins import Image, label_type
 
 #: Dilations, and erosions after them (seed: n = 5, both with OpenCV's 3 x 3 kernel).
 STEPS = 5
@@ -74,7 +73,7 @@ def stretched(image: Image) -> Image:
             f"the image's brightest pixel is {high - low:.0f} of 255 above its middle one; no pins are seen: look at light and focus"
         )
     table = np.clip((np.arange(256) - low) * (255 / (high - low)), 0, 255).astype(np.uint8)
-    return table[smooth]
+    return cv2.LUT(smooth, table)  # type: ignore[return-value]
 
 
 def merged(image: Image, *, steps: int = STEPS) -> Image:
@@ -85,7 +84,7 @@ def merged(image: Image, *, steps: int = STEPS) -> Image:
 
 def white(image: NDArray[Any]) -> Image:
     """Black below `WHITE`, 255 from there."""
-    return np.multiply(image > WHITE, 255, dtype=np.uint8)
+    return cv2.threshold(image, WHITE, 255, cv2.THRESH_BINARY)[1]  # type: ignore[return-value]
 
 
 def feature(image: Image, *, plate_is_white: bool = False) -> Feature | None:
@@ -114,7 +113,8 @@ def feature(image: Image, *, plate_is_white: bool = False) -> Feature | None:
     """
     bright = stretched(image)
     pins = white(bright)
-    count, labels, stats, centres = cv2.connectedComponentsWithStats(merged(bright))
+    regions = merged(bright)
+    count, labels, stats, centres = cv2.connectedComponentsWithStats(regions, ltype=label_type(regions))
     if count < 2:
         return None
     # Most regions are pins alone: the middling one is as large as a pin.

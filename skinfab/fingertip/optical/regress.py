@@ -3,6 +3,10 @@
 The components keep their size: whitened, the last ones' noise would count as much as the first ones' movement. The angle is learned as
 cosine and sine, so it has no seam. Width of the kernel and ridge are chosen on whole groups that are held out for it. (Saunders,
 Gammerman and Vovk 1998.)
+
+How sure it is has two parts. Is the image like those that were learned: as near to them as held-out ones are, also for how close
+they lie to each other there? (Light touches all move the pins little and lie close; one depth more is far by that measure and near by
+the plain one.) And was what is like it read rightly when it was held out itself?
 """
 
 from __future__ import annotations
@@ -20,7 +24,7 @@ from skinfab.errors import InputError
 from skinfab.fingertip.optical.edge import Edge
 from skinfab.fingertip.optical.pins import Image, Pins, Tracked, require_image
 from skinfab.fingertip.splits import group_folds
-from skinfab.tolerances import PIN_COMPONENTS
+from skinfab.tolerances import EDGE_RIGHT_DEG, EDGE_RIGHT_MM, EDGE_SIMILAR, EDGE_SPACING, PIN_COMPONENTS
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
@@ -54,8 +58,13 @@ class EdgeModel:
         What is said where nothing is like what was learned.
     gamma, ridge : float
         Of the kernel.
-    usual : (2,) float
-        Distance from what was learned, and part of the movement outside the components (px), that held-out images have at most.
+    spacing : (n,) float
+        How far from each of the features the nearest others lie.
+    wrong : (n,) float
+        1 where the edge was read wrongly of an image while its group was held out, otherwise 0.
+    usual : (3,) float
+        Distance from what was learned, the same in parts of the spacing there, and movement outside the components (px), that held-out
+        images have at most.
     """
 
     pins: Pins
@@ -66,6 +75,8 @@ class EdgeModel:
     centre: FloatArray
     gamma: float
     ridge: float
+    spacing: FloatArray
+    wrong: FloatArray
     usual: FloatArray
 
     def edge(self, image: Image) -> Edge:
@@ -82,14 +93,16 @@ class EdgeModel:
         """The edge that tracked pins tell."""
         moved = found.moved.ravel() - self.mean
         z = moved @ self.basis
-        apart = self._support_square + z @ z - 2 * (self.support @ z)
-        said = np.exp(-self.gamma * np.maximum(apart, 0)) @ self.weights + self.centre
+        apart = np.maximum(self._support_square + z @ z - 2 * (self.support @ z), 0)
+        said = np.exp(-self.gamma * apart) @ self.weights + self.centre
         outside = math.sqrt(max(float(moved @ moved - ((z / self._scale) ** 2).sum()), 0.0) / len(moved))
-        strange = max(math.sqrt(max(float(apart.min()), 0.0)) / self.usual[0], outside / self.usual[1])
+        like = _like(apart[None])[0]
+        far, doubt = _far(apart[None], like[None], self.spacing), _mean_near(apart[like], self.wrong[like])
+        strange = float(max(far[0][0] / self.usual[0], far[1][0] / self.usual[1], outside / self.usual[2]))
         # Twice as strange as anything that was held out: nothing is known of it. And a pin that is not seen is not known.
         confidence = min(max(2 - strange, 0.0), 1.0) * (1 - float(found.missing.mean()))
         depth = float(said[3]) if len(said) == 4 else math.nan
-        return Edge(float(said[0]), math.atan2(said[2], said[1]), depth, confidence * min(math.hypot(said[1], said[2]), 1.0))
+        return Edge(float(said[0]), math.atan2(said[2], said[1]), depth, confidence * min(math.hypot(said[1], said[2]), 1 - doubt))
 
     @cached_property
     def _support_square(self) -> FloatArray:
@@ -221,13 +234,41 @@ def learn(examples: Examples, *, groups: Sequence[Hashable] | None = None) -> Ed
         return float((((said + centre - other.truth) / spread) ** 2).mean())
 
     gamma, ridge = min(itertools.product(GAMMAS, RIDGES), key=error)
-    outside = _outside(other.moved - mean, W, basis)
-    usual = np.array([np.quantile(np.sqrt(across.min(axis=1)), _USUAL), np.quantile(outside, _USUAL)])
+    far, far_by_spacing = _far(across, _like(across), _spacing(near))
+    usual = [np.quantile(each, _USUAL) for each in (far, far_by_spacing, _outside(other.moved - mean, W, basis))]
     mean, basis = _components(examples)
     Z = (examples.moved - mean) @ basis
-    centre = examples.truth.mean(axis=0)
-    weights = _solve(_apart(Z, Z), examples.truth - centre, gamma, ridge)
-    return EdgeModel(examples.pins, mean, basis, Z, weights, centre, gamma, ridge, np.maximum(usual, 1e-9))
+    centre, apart = examples.truth.mean(axis=0), _apart(Z, Z)
+    weights, wrong = _solve_and_judge(apart, examples.truth, centre, gamma, ridge, groups)
+    return EdgeModel(
+        examples.pins, mean, basis, Z, weights, centre, gamma, ridge, _spacing(apart), wrong, np.maximum(np.array(usual), 1e-9)
+    )
+
+
+def _like(apart: FloatArray) -> NDArray[np.intp]:
+    """The features that each image (a row of squared distances) is most like, (a, k)."""
+    k = min(EDGE_SIMILAR, apart.shape[1])
+    return np.argpartition(apart, k - 1, axis=1)[:, :k]
+
+
+def _spacing(apart: FloatArray) -> FloatArray:
+    """How far the nearest others of each lie, (n,)."""
+    k = min(EDGE_SPACING, len(apart) - 1)
+    near = np.partition(apart, k, axis=1)[:, : k + 1]  # itself among them
+    out: FloatArray = np.maximum(np.sqrt(near.sum(axis=1) / k), 1e-9)
+    return out
+
+
+def _far(apart: FloatArray, like: NDArray[np.intp], spacing: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Distance from the nearest feature, and the same in parts of the spacing there; each (a,)."""
+    nearest = np.sqrt(apart.min(axis=1))
+    return nearest, nearest / spacing[like].mean(axis=1)
+
+
+def _mean_near(apart: FloatArray, values: FloatArray) -> float:
+    """Mean of values, those nearer counting more."""
+    weight = np.exp(-4 * apart / max(float(apart.max()), 1e-12))
+    return float(weight @ values / weight.sum())
 
 
 def _components(examples: Examples) -> tuple[FloatArray, FloatArray]:
@@ -258,7 +299,33 @@ def _apart(A: FloatArray, B: FloatArray) -> FloatArray:
 def _solve(apart: FloatArray, truth: FloatArray, gamma: float, ridge: float) -> FloatArray:
     from scipy.linalg import cho_factor, cho_solve
 
-    K = np.exp(-gamma * apart)
-    K[np.diag_indices_from(K)] += ridge
+    K = _kernel(apart, gamma, ridge)
     out: FloatArray = cho_solve(cho_factor(K, lower=True, overwrite_a=True, check_finite=False), truth, check_finite=False)
     return out
+
+
+def _kernel(apart: FloatArray, gamma: float, ridge: float) -> FloatArray:
+    K = np.exp(-gamma * apart)
+    K[np.diag_indices_from(K)] += ridge
+    return K
+
+
+def _solve_and_judge(
+    apart: FloatArray, truth: FloatArray, centre: FloatArray, gamma: float, ridge: float, groups: Sequence[Hashable]
+) -> tuple[FloatArray, FloatArray]:
+    """Weights, and of which images the edge is wrong when their groups are held out.
+
+    What a model without rows S would say of them follows from the inverse of the whole kernel: off by inv(K^-1[S, S]) weights[S]
+    (Rasmussen and Williams 2006, equation 5.12, for one row).
+    """
+    from scipy.linalg import cho_factor, cho_solve, solve
+
+    inverse = cho_solve(cho_factor(_kernel(apart, gamma, ridge), lower=True, check_finite=False), np.eye(len(apart)), check_finite=False)
+    weights: FloatArray = inverse @ (truth - centre)
+    said = truth.copy()
+    for _, held in group_folds(groups, k=_PARTS):
+        said[held] -= solve(inverse[np.ix_(held, held)], weights[held], assume_a="pos")
+    turned = np.arctan2(said[:, 2], said[:, 1]) - np.arctan2(truth[:, 2], truth[:, 1])
+    turned = np.abs((turned + math.pi) % math.tau - math.pi)
+    wrong = (np.abs(said[:, 0] - truth[:, 0]) > EDGE_RIGHT_MM) | (turned > math.radians(EDGE_RIGHT_DEG))
+    return weights, wrong.astype(float)

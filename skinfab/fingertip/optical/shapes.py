@@ -38,16 +38,20 @@ class Shape:
         True ones, or the diameter of a disk.
     published_mm : tuple of float
         What the seed's fingertip found (table 1).
+    area_mm2, humans_mm2 : float
+        What the seed's fingertip and people went round (table 2).
     """
 
     name: str
     plate: Outline
     sides_mm: tuple[float, ...]
     published_mm: tuple[float, ...]
+    area_mm2: float
+    humans_mm2: float
 
 
 def shapes() -> tuple[Shape, ...]:
-    """Rectangle, hexagon and circle of table 1, about the origin.
+    """Rectangle, hexagon and circle of tables 1 and 2, about the origin.
 
     Examples
     --------
@@ -56,9 +60,9 @@ def shapes() -> tuple[Shape, ...]:
     """
     four, six = (108.0, 75.0, 107.0, 70.0), (54.0, 53.0, 53.0, 54.0, 53.0, 53.0)
     return (
-        Shape("rectangle", _four_sided(four), four, (104.0, 70.0, 104.0, 66.0)),
-        Shape("hexagon", _even_angles(six), six, (48.0, 50.0, 49.0, 51.0, 48.0, 46.0)),
-        Shape("circle", Disk(30.0), (60.0,), (61.0,)),
+        Shape("rectangle", _four_sided(four), four, (104.0, 70.0, 104.0, 66.0), 8357.0, 9454.0),
+        Shape("hexagon", _even_angles(six), six, (48.0, 50.0, 49.0, 51.0, 48.0, 46.0), 7133.3, 8047.3),
+        Shape("circle", Disk(30.0), (60.0,), (61.0,), 2700.0, 2925.0),
     )
 
 

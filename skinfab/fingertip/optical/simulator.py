@@ -77,6 +77,19 @@ class Dome:
         inside = np.abs(a + b) <= self.rings
         return self.pitch_mm * np.c_[a + b / 2, b * math.sqrt(3) / 2][inside]
 
+    @cached_property
+    def stamps(self) -> tuple[Image, int]:
+        """A tip's spot at every part of a pixel, (rows, columns, h, h), and its pixels beside the middle one."""
+        scale = 1 << _SHIFT
+        radius = round(self.spot_mm * self.px_per_mm * scale)
+        reach = radius // scale + 2
+        out = np.zeros((scale, scale, 2 * reach + 1, 2 * reach + 1), np.uint8)
+        for y in range(scale):
+            for x in range(scale):
+                middle = (reach * scale + x, reach * scale + y)
+                cv2.circle(out[y, x], middle, radius, 255, cv2.FILLED, cv2.LINE_AA, _SHIFT)
+        return out, reach
+
     def to_px(self, P: FloatArray) -> FloatArray:
         """Places (..., 2) mm as pixels (column, row); whole numbers are the pixels' middles."""
         return P * self.px_per_mm + (self.size_px - 1) / 2
@@ -213,18 +226,23 @@ class Fingertip:
 
     def image(self, P: FloatArray, *, rng: np.random.Generator | None = None) -> Image:
         """What the camera sees of tips at `P` (k, 2) mm, (size, size) of grey; with `rng`, noisy."""
-        drawn = np.zeros((self.dome.size_px, self.dome.size_px), np.uint8)
-        scale = 1 << _SHIFT
-        radius = round(self.dome.spot_mm * self.dome.px_per_mm * scale)
-        for x, y in np.rint(self.dome.to_px(P) * scale).astype(int).tolist():
-            cv2.circle(drawn, (x, y), radius, 255, cv2.FILLED, cv2.LINE_AA, _SHIFT)
+        n, (stamps, reach) = self.dome.size_px, self.dome.stamps
+        at = np.rint(self.dome.to_px(P) * (1 << _SHIFT)).astype(np.int64)
+        whole, part = at >> _SHIFT, at & ((1 << _SHIFT) - 1)
+        across = np.arange(-reach, reach + 1)
+        # With a rim all round, so that no spot that is seen in part or not at all needs a case of its own.
+        wide = n + 2 * (2 * reach + 1)
+        corner = np.clip(whole, -reach - 1, n + reach) + (2 * reach + 1)
+        place = (corner[:, 1, None, None] + across[:, None]) * wide + corner[:, 0, None, None] + across
+        rimmed = np.zeros(wide * wide, np.uint8)
+        np.maximum.at(rimmed, place.ravel(), stamps[part[:, 1], part[:, 0]].ravel())
+        inner = slice(2 * reach + 1, 2 * reach + 1 + n)
+        drawn: Image = np.ascontiguousarray(rimmed.reshape(wide, wide)[inner, inner])
         if rng is None or not self.errors.grey:
             return drawn
         # One grain, elsewhere in every frame: drawing it anew took half of the time.
-        n = self.dome.size_px
-        down, across = rng.integers(0, n, 2)
-        grey = drawn + self._grain[down : down + n, across : across + n]
-        return np.clip(np.rint(grey), 0, 255).astype(np.uint8)
+        down, right = rng.integers(0, n, 2)
+        return cv2.add(drawn, self._grain[down : down + n, right : right + n], dtype=cv2.CV_8U)  # type: ignore[return-value]
 
     def frame(
         self,

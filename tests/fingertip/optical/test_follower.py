@@ -121,11 +121,10 @@ def test_a_pose_of_no_confidence_is_not_followed() -> None:
     assert len(follow_pose(robot, lambda _: Edge(0.0, 0.0, confidence=math.nan)).path) == 0
 
 
-def test_the_seeds_way_goes_along_the_circle(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("skinfab.fingertip.optical.follower.MOST_FRAMES", 50)
+def test_the_seeds_way_goes_along_the_circle() -> None:
     circle = shapes()[-1]
     rig = Rig(circle.plate, paper_fingertip(), circle.plate.start, Platform(), seed=1)
-    trace = follow_published(rig)
+    trace = follow_published(rig, most_frames=50)
     assert trace.frames == 50 and np.abs(circle.plate.distance(trace.path)).mean() < 4
     turn = np.unwrap(np.arctan2(trace.path[:, 1], trace.path[:, 0]))
     assert turn[-1] - turn[0] > 15 / 30  # counter-clockwise, by half as many millimetres as a third of its steps

@@ -9,7 +9,7 @@ import pytest
 from skinfab.errors import InputError
 from skinfab.fingertip.optical.edge import Edge
 from skinfab.fingertip.optical.judge import errors, held_out, off_by, said
-from skinfab.fingertip.optical.labelled import labelled
+from skinfab.fingertip.optical.labelled import FOLLOWED_MM, labelled
 from skinfab.fingertip.optical.model_file import load_edge, save_edge
 from skinfab.fingertip.optical.plates import HalfPlane
 from skinfab.fingertip.optical.regress import EdgeModel, Examples, learn, train
@@ -21,13 +21,13 @@ TIP = Fingertip()
 
 @pytest.fixture(scope="module")
 def seen() -> Examples:
-    each = list(labelled(TIP, 250, reach_mm=4, shear_mm=0.1, seed=1))
+    each = list(labelled(TIP, 250, reach_mm=4, depths_mm=FOLLOWED_MM, shear_mm=0.1, seed=1))
     return Examples.of([one.image for one in each], [one.edge for one in each], rest=TIP.image(TIP.rest))
 
 
 @pytest.fixture(scope="module")
 def other(seen: Examples) -> Examples:
-    each = list(labelled(TIP, 60, reach_mm=3, shear_mm=0.1, seed=2))
+    each = list(labelled(TIP, 60, reach_mm=3, depths_mm=FOLLOWED_MM, shear_mm=0.1, seed=2))
     return Examples.of([one.image for one in each], [one.edge for one in each], pins=seen.pins)
 
 
@@ -89,8 +89,13 @@ def test_a_model_is_the_same_when_it_is_read_back(model: EdgeModel, tmp_path: Pa
     np.testing.assert_allclose(again, first, rtol=1e-9)
     assert made_from == {"simulated": True}
     saved = load_model(path, kind="optical edge")
-    for arrays in ({**saved.arrays, "mean": saved.arrays["mean"][1:]}, {k: v for k, v in saved.arrays.items() if k != "usual"}):
-        save_model(path, kind="optical edge", facts=saved.facts, arrays=arrays)
+    for facts, arrays in (
+        (saved.facts, {**saved.arrays, "mean": saved.arrays["mean"][1:]}),
+        (saved.facts, {k: v for k, v in saved.arrays.items() if k != "usual"}),
+        (saved.facts, {**saved.arrays, "spacing": -saved.arrays["spacing"]}),
+        ({**saved.facts, "gamma": -3.0}, saved.arrays),  # it would be surest of what is unlike all that was learned
+    ):
+        save_model(path, kind="optical edge", facts=facts, arrays=arrays)
         with pytest.raises(InputError, match="train it again"):
             load_edge(path)
 
