@@ -10,6 +10,7 @@ import argparse
 import json
 import sys
 import tempfile
+import time
 from pathlib import Path
 
 import numpy as np
@@ -26,6 +27,9 @@ from skinfab.mesh.door import load_usable  # noqa: E402
 from skinfab.skin import Skin, Source  # noqa: E402
 
 MESH = ROOT / "meshes/robot_finger.obj"
+#: A picture is taken once the screen has stayed the same for so long, s; so many times it is looked whether it has.
+_CALM_S, _TRIES = 1.0, 8
+
 FORM = ".body.middle.side.forms"
 TABS = ".body.middle.tabs"
 
@@ -47,7 +51,16 @@ class Album:
         """The screen once all is drawn, in 256 colours: a third of the bytes, and nothing to be seen of it."""
         window.settled()
         path = self.folder / f"gui_{name}_{self.theme}.png"
-        self.screen.picture(path)
+        # What a document is shown by is made beside the window's loop: until nothing changes any more, or always does, as live plots.
+        before = b""
+        for _ in range(_TRIES):
+            self.screen.picture(path)
+            with Image.open(path) as shown:
+                now = shown.tobytes()
+            if now == before:
+                break
+            before = now
+            time.sleep(_CALM_S)
         with Image.open(path) as full:
             full.convert("RGB").quantize(256, dither=Image.Dither.NONE).save(path, optimize=True)
 

@@ -51,7 +51,19 @@ class Paint:
 
 def brightness(normals: Float32, turn: NDArray[np.float64]) -> Float32:
     """Cosines between unit normals (q, 3) and the lamp, and between them and the viewer: (q, 2); `turn` as a camera's."""
-    return normals @ np.column_stack([turn.T @ _LAMP, turn[2]]).astype(np.float32)
+    light = np.empty((len(normals), 2), dtype=np.float32)
+    _cosines(normals, np.stack([turn.T @ _LAMP, turn[2]]).astype(np.float32), light)
+    return light
+
+
+@numba.njit(cache=True, nogil=True)
+def _cosines(normals: Float32, ways: Float32, light: Float32) -> None:
+    """``normals @ ways.T``, which numpy shares among threads that wait for one another: 200 ms where other work has the processors,
+    as while an object of 170,000 triangles is cut, instead of one or two."""
+    for k in range(len(normals)):
+        x, y, z = normals[k, 0], normals[k, 1], normals[k, 2]
+        light[k, 0] = x * ways[0, 0] + y * ways[0, 1] + z * ways[0, 2]
+        light[k, 1] = x * ways[1, 0] + y * ways[1, 1] + z * ways[1, 2]
 
 
 #: Stands for no checker board: compiled code takes one type.
