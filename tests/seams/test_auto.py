@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import shapes
 
+from skinfab.mesh.decimate import decimate
 from skinfab.mesh.model import Mesh
 from skinfab.seams.auto import find_seams
 from skinfab.seams.cut import open_pieces, seam_length
@@ -24,8 +25,12 @@ STUDY = {
 
 @pytest.mark.parametrize("name", STUDY)
 def test_seven_objects_at_the_studys_distortion(name: str) -> None:
+    """The grip with a quarter of its triangles: all of them are cut as well in tests/cli/test_make.py."""
     d, most = STUDY[name]
     mesh = shapes.object_mesh(name)
+    if name == "grip":
+        few = decimate(mesh.V, mesh.F, faces=len(mesh.F) // 4)
+        mesh = Mesh(few.V, few.F)
     seams = find_seams(mesh, Limits(mean=d + 1e-9))
     areas = [mesh.face_areas[piece.faces].sum() for piece, _ in seams.pieces]
     assert sum(areas) == pytest.approx(mesh.area)
