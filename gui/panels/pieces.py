@@ -10,7 +10,7 @@ from gui.state.derived import Derived
 from gui.state.selection import NOTHING, Target
 from gui.state.session import Session
 
-#: Name, heading, and px at 96 dots an inch that its values need; a column is wider where its heading, or a large size, needs that.
+#: Name, heading, and px at 96 dots an inch that its values need; a column is wider where its heading, or a value, needs that.
 _COLUMNS = (("id", "id", 40), ("size", "size, mm", 74), ("mean", "d mean", 44), ("p99", "p99", 40), ("max", "max", 40))
 
 #: What a cell leaves free beside its words, px at 96 dots an inch.
@@ -54,7 +54,7 @@ class PiecesPanel(ttk.Frame):
         for piece in skin.pieces:
             d = self._derived.distortion(skin.mesh, piece)
             size = f"{piece.size[0]:.0f} x {piece.size[1]:.0f}"
-            self.list.insert("", "end", iid=piece.id, values=(piece.id, size, f"{d.mean:.3f}", f"{d.p99:.2f}", f"{d.max:.2f}"))
+            self.list.insert("", "end", iid=piece.id, values=(piece.id, size, _short(d.mean, 3), _short(d.p99), _short(d.max)))
         self._widen()
         loose = int((self._derived.piece_of_face(skin) < 0).sum())
         words = f"{len(skin.mesh.F)} triangles, {len(skin.pieces)} piece{'' if len(skin.pieces) == 1 else 's'}"
@@ -62,13 +62,13 @@ class PiecesPanel(ttk.Frame):
         self._follow()
 
     def _widen(self) -> None:
-        """Large pieces have long sizes: none is cut off."""
-        sizes = [self.list.set(id, "size") for id in self.list.get_children()]
-        name, heading, width = _COLUMNS[1]
+        """Large pieces have long sizes, bad ones long figures: none is cut off."""
         letters = font.nametofont(str(ttk.Style(self).lookup("Treeview", "font")) or "TkDefaultFont", root=self)
-        least = max(px(self, width), measured(self, heading), *(letters.measure(words) + px(self, _BESIDE) for words in sizes))
-        if least != self.list.column(name, "minwidth"):
-            self.list.column(name, width=least, minwidth=least)
+        for name, heading, width in _COLUMNS[1:]:
+            shown = [self.list.set(id, name) for id in self.list.get_children()]
+            least = max(px(self, width), measured(self, heading), *(letters.measure(words) + px(self, _BESIDE) for words in shown))
+            if least != self.list.column(name, "minwidth"):
+                self.list.column(name, width=least, minwidth=least)
 
     def _follow(self) -> None:
         """Select what the session has selected."""
@@ -93,3 +93,14 @@ class PiecesPanel(ttk.Frame):
             self._session.select(Target(piece=chosen[0]))
         elif not chosen and selected.piece and not selected.sensor:
             self._session.select(NOTHING)
+
+
+def _short(d: float, digits: int = 2) -> str:
+    """So many digits behind the point, where there is one to speak of.
+
+    Examples
+    --------
+    >>> _short(4.107), _short(23.791), _short(1234567.0)
+    ('4.11', '23.79', '1.23e+06')
+    """
+    return f"{d:.{digits}f}" if d < 100 else f"{d:.3g}"
