@@ -10,7 +10,7 @@ from skinfab.bench.charts import png
 from skinfab.bench.gravity import USUAL, paper_errors
 from skinfab.files import atomic_write
 
-_COLOURS = {"published": "#D55E00", "offset fitted": "#0072B2"}
+_COLOURS = {"published": "#D55E00", "offset fitted": "#0072B2", "hand weighed": "#009E73"}
 _DPI = 150
 
 
@@ -18,7 +18,7 @@ def draw(table: Sequence[Mapping[str, Any]], path: Path) -> None:
     """Write the chart as PNG: error over span and over poses, and what part of the errors the stated 95 % hold."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
-    from matplotlib.ticker import NullFormatter
+    from matplotlib.ticker import LogFormatter, NullFormatter
 
     figure = Figure(figsize=(11.0, 3.9), dpi=_DPI, layout="constrained")
     FigureCanvasAgg(figure)
@@ -43,9 +43,12 @@ def draw(table: Sequence[Mapping[str, Any]], path: Path) -> None:
         axes.grid(True, which="both", lw=0.3, alpha=0.6)
     for axes in panels[:2]:
         axes.set_yscale("log")
+        axes.yaxis.set_major_formatter("{x:g}")
+        axes.yaxis.set_minor_formatter(LogFormatter(labelOnlyBase=False, minor_thresholds=(2, 0.5)))
         axes.set_ylabel("error, mm")
         axes.axhspan(min(paper_errors()), max(paper_errors()), color="#999999", alpha=0.25, lw=0, label="the paper's table 3")
     panels[2].axhline(0.95, color="#555555", lw=1, ls="--")
     panels[2].set(ylabel="errors within the stated 95 %", ylim=(0, 1.02))
-    panels[0].legend(fontsize=7, markerscale=0.6)
+    # The third panel is empty where the first two are full.
+    panels[2].legend(*panels[0].get_legend_handles_labels(), fontsize=7, markerscale=0.6, loc="center right")
     atomic_write(path, png(figure))

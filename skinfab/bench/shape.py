@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -24,6 +24,8 @@ from skinfab.fingertip.force.grasp import (
     OVER,
     PAPER,
     ROUND,
+    SHAPES,
+    STRANGE,
     HandScene,
     Solid,
     simulate_grasp,
@@ -32,7 +34,18 @@ from skinfab.fingertip.force.grasp import (
 )
 from skinfab.fingertip.force.gravity import centre_of_gravity, published_centre
 from skinfab.fingertip.force.reconstruct import published, reconstruct
-from skinfab.fingertip.force.shape import CONFIDENCE, FEATURES, MOST_GRASPS, Decision, ShapeModel, decide, features_of, fit_shapes
+from skinfab.fingertip.force.shape import (
+    CONFIDENCE,
+    FEATURES,
+    MOST_GRASPS,
+    Decision,
+    ShapeModel,
+    decide,
+    features_of,
+    fit_shapes,
+    is_strange,
+    misfit_limits,
+)
 from skinfab.fingertip.force.shape_figure import View, draw_solids
 from skinfab.fingertip.force.shape_study import Examples, HeldOut, examples, judged
 from skinfab.progress import Progress, silent
@@ -57,7 +70,7 @@ class Row:
     yaw_deg : float, deg
         Objects are turned by up to this.
     confidence : float
-        Less is not answered.
+        Less is not answered, nor what fits none of the shapes; 0: all are answered.
     answered : float
         Part of the grasps.
     right, low, high : float
@@ -109,7 +122,7 @@ def run(folder: Path, *, repeats: int = REPEATS, progress: Progress = silent) ->
     Returns
     -------
     dict
-        "sentence", "notes" (what to know of the measurement), "rows", "sizes" and "regrasp".
+        "sentence", "notes" (what to know of the measurement), "rows", "sizes", "regrasp" and "strange".
     """
     from skinfab.bench.force_ablation import hands_without
     from skinfab.bench.shape_chart import draw
@@ -122,7 +135,14 @@ def run(folder: Path, *, repeats: int = REPEATS, progress: Progress = silent) ->
     again = regrasps(progress=lambda done, what: progress(0.6 + 0.1 * done, what))
     sizes = reconstructions(progress=lambda done, what: progress(0.7 + 0.1 * done, what))
     without = hands_without(progress=lambda done, what: progress(0.8 + 0.2 * done, what))
-    for name, content in (("shape", rows), ("shape_regrasp", again), ("shape_sizes", sizes), ("shape_ablation", without)):
+    tables = (
+        ("shape", rows),
+        ("shape_regrasp", again),
+        ("shape_sizes", sizes),
+        ("shape_ablation", without),
+        ("shape_strange", strangers()),
+    )
+    for name, content in tables:
         write_csv(content, folder / f"{name}.csv")
     table, regrasped, solved = (read_csv(folder / f"{name}.csv") for name in ("shape", "shape_regrasp", "shape_sizes"))
     for name, of in held.items():
@@ -131,7 +151,8 @@ def run(folder: Path, *, repeats: int = REPEATS, progress: Progress = silent) ->
     said = sentence(table, regrasped, solved)
     atomic_write(folder / "shape.txt", "\n".join([said, *notes]) + "\n")
     draw(table, solved, folder / "shape.png")
-    return {"sentence": said, "notes": notes, "rows": table, "regrasp": regrasped, "sizes": solved}
+    strange = read_csv(folder / "shape_strange.csv")
+    return {"sentence": said, "notes": notes, "rows": table, "regrasp": regrasped, "sizes": solved, "strange": strange}
 
 
 def grasped(solids: Sequence[Solid], count: int, *, seed: int, scene: HandScene) -> Examples:
@@ -155,7 +176,8 @@ def measure(
             out = []
             for k, (learned, new) in enumerate(sets):
                 network = fit_shapes(features_of(learned.found, features), learned.shape, features, seed=k)
-                out.append(judged(network, new, features))
+                limits = misfit_limits(features_of(learned.found, "misfits"), learned.shape)
+                out.append(judged(network, new, features, limits=limits))
             held = HeldOut(
                 *(np.concatenate([getattr(each, name) for each in out]) for name in ("probability", "shape", "object", "strange"))
             )
@@ -166,10 +188,56 @@ def measure(
             work = partial(judged, network, sets[-1][1], features)
             cost = 1e3 * min(timed_twice(work)[1] for _ in range(repeats)) / len(sets[-1][1].found)
             for least in CONFIDENCES:
-                on = sure >= least
+                on = (sure >= least) & ~(held.strange & (least > 0))
                 rate = grouped_accuracy(right[on], [tuple(each) for each in group[on].tolist()])
                 rows.append(Row(features, yaw, least, float(on.mean()), rate.value, rate.low, rate.high, cost))
     return rows, confusions
+
+
+@dataclass(frozen=True)
+class Strange:
+    """What is said of grasps that are of no shape that was learned, beside those that are: parts that are answered.
+
+    Parameters
+    ----------
+    what : str
+        ``new objects``, ``mixed up`` (fingers' turns of another grasp), or a solid that is none of the three.
+    grasps : int
+    confident : float
+        By the confidence of 0.9 alone.
+    any_shape : float
+        And where the best of the three shapes fits as well as it fits 99 % of those learned from.
+    answered : float
+        And where the shape that is said does too, see `skinfab.fingertip.force.shape.misfit_limits`.
+    """
+
+    what: str
+    grasps: int
+    confident: float
+    any_shape: float
+    answered: float
+
+
+def strangers(*, seeds: Sequence[int] = SEEDS, asked: int = ASKED) -> list[Strange]:
+    """A row for new objects, for grasps that are mixed up, and for each solid that is none of the three."""
+    said: dict[str, list[tuple[bool, bool, bool]]] = {}
+    for seed in seeds:
+        learned = grasped(LEARNED, GRASPS, seed=seed, scene=HandScene())
+        X = features_of(learned.found, "misfits")
+        network, limits = fit_shapes(X, learned.shape, "misfits", seed=seed), misfit_limits(X, learned.shape)
+        rng = np.random.default_rng(4000 + seed)
+        new = [simulate_grasp(solid, seed=rng) for solid in NEW for _ in range(asked)]
+        sets = {"new objects": new, "mixed up": [replace(a, turn=b.turn) for a, b in zip(new, new[::-1], strict=True)]}
+        sets |= {solid.shape: [simulate_grasp(solid, seed=rng) for _ in range(asked)] for solid in STRANGE}
+        for what, grasps in sets.items():
+            found = [each for each in map(touches, grasps) if not each.fault]
+            misfits = features_of(found, "misfits")
+            probability = network.probability(misfits)
+            sure, likely = probability.max(axis=1) >= CONFIDENCE, probability.argmax(axis=1)
+            loose = np.append(np.full(len(SHAPES), np.inf), limits[-1])
+            gates = (sure, *(sure & ~is_strange(misfits, likely, each) for each in (loose, limits)))
+            said.setdefault(what, []).extend(zip(*(each.tolist() for each in gates), strict=True))
+    return [Strange(what, len(each), *np.mean(each, axis=0).tolist()) for what, each in said.items()]
 
 
 @dataclass(frozen=True)
@@ -195,7 +263,9 @@ def regrasps(*, seeds: Sequence[int] = SEEDS, objects: int = 20, progress: Progr
         rng = np.random.default_rng(2000 + seed)
         asked = [(solid.shape, [simulate_grasp(solid, seed=rng) for _ in range(MOST_GRASPS)]) for solid in NEW for _ in range(objects // 3)]
         for features in FEATURES:
-            model = ShapeModel(features, fit_shapes(features_of(learned.found, features), learned.shape, features, seed=k), {})
+            limits = misfit_limits(features_of(learned.found, "misfits"), learned.shape).tolist()
+            network = fit_shapes(features_of(learned.found, features), learned.shape, features, seed=k)
+            model = ShapeModel(features, network, {"misfit_limits": limits})
             said.setdefault(features, []).extend((shape, decide(model, of[:1]), decide(model, of)) for shape, of in asked)
     rows = []
     for features, each in said.items():

@@ -54,6 +54,8 @@ def draw(table: Sequence[Mapping[str, Any]], sizes: Sequence[Mapping[str, Any]],
     solids.plot(range(len(paper)), paper, "k_", ms=18, label="the paper's one example (real hand)")
     solids.set_xticks(range(len(names)), names, fontsize=8)
     solids.set_ylabel("error of a radius or side, mm")
-    solids.legend(fontsize=7)
+    # Room above the longest whisker, which the key would hide.
+    solids.set_ylim(0, 1.35 * max(row["error_p90_mm"] for row in sizes))
+    solids.legend(fontsize=7, loc="upper left")
     solids.grid(True, axis="y", lw=0.3, alpha=0.6)
     atomic_write(path, png(figure))

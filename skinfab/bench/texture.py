@@ -69,26 +69,28 @@ class Row:
 
 
 def run(folder: Path, *, repeats: int = REPEATS, progress: Progress = silent) -> dict[str, Any]:
-    """Measure, and write texture.csv, texture.png and texture.txt into `folder`, which is there already.
+    """Measure, and write texture.csv, texture_ablation.csv, texture.png and texture.txt into `folder`, which is there already.
 
     Returns
     -------
     dict
-        "sentence", "notes" (what to know of the measurement) and "rows".
+        "sentence", "notes" (what to know of the measurement), "rows" and "ablation".
     """
+    from skinfab.bench.texture_ablation import slides_without
     from skinfab.bench.texture_chart import draw
     from skinfab.files import atomic_write
 
     notes = [f"simulated: {len(SEEDS)} sets of {SPECIMENS} specimens and {SLIDES} slides of each of the paper's six materials"]
     with one_processor() as alone:
         notes += [] if alone else ["this system cannot keep a process on one processor"]
-        rows = measure(repeats=repeats, progress=progress)
+        rows = measure(repeats=repeats, progress=lambda done, what: progress(0.6 * done, what))
     write_csv(rows, folder / "texture.csv")
+    write_csv(slides_without(progress=lambda done, what: progress(0.6 + 0.4 * done, what)), folder / "texture_ablation.csv")
     table = read_csv(folder / "texture.csv")
     said = sentence(table)
     atomic_write(folder / "texture.txt", "\n".join([said, *notes]) + "\n")
     draw(table, folder / "texture.png")
-    return {"sentence": said, "notes": notes, "rows": table}
+    return {"sentence": said, "notes": notes, "rows": table, "ablation": read_csv(folder / "texture_ablation.csv")}
 
 
 def measure(

@@ -27,6 +27,7 @@ BENCHES = {
     "shape": "skinfab.bench.shape",
     "texture": "skinfab.bench.texture",
     "gravity": "skinfab.bench.gravity",
+    "liquid": "skinfab.bench.liquid",
 }
 
 Verbs = Mapping[str, "argparse._SubParsersAction[argparse.ArgumentParser]"]

@@ -24,6 +24,9 @@ FloatArray = NDArray[np.float64]
 
 SPHERE, CYLINDER, CUBOID = "sphere", "cylinder", "cuboid"
 SHAPES = (SPHERE, CYLINDER, CUBOID)
+#: What is none of these, to see what is said of it.
+CONE, PRISM, ELLIPSOID = "cone", "prism", "ellipsoid"
+_SIZES = {SPHERE: 1, CYLINDER: 2, CUBOID: 3, CONE: 2, PRISM: 2, ELLIPSOID: 3}
 FINGERS = 4
 GRAVITY_M_S2 = 9.81
 #: Directions from which the fingers come (azimuth, deg; None: from above). All round, and one over the top.
@@ -38,9 +41,10 @@ class Solid:
     Parameters
     ----------
     shape : str
-        One of `SHAPES`.
+        One of `SHAPES`, or a cone, a (three-sided) prism or an ellipsoid.
     size : tuple of float, mm
-        Radius of a sphere; radius and height of a cylinder; the three sides of a cuboid.
+        Radius of a sphere; radius and height of a cylinder and of a cone (at its base); the three sides of a cuboid; of a prism the
+        radius of the circle in it, and its height; half axes of an ellipsoid.
 
     Examples
     --------
@@ -52,9 +56,9 @@ class Solid:
     size: tuple[float, ...]
 
     def __post_init__(self) -> None:
-        wanted = {SPHERE: 1, CYLINDER: 2, CUBOID: 3}.get(self.shape)
+        wanted = _SIZES.get(self.shape)
         if wanted is None:
-            raise InputError(f"{self.shape!r} is no shape; there are {', '.join(SHAPES)}")
+            raise InputError(f"{self.shape!r} is no shape; there are {', '.join(_SIZES)}")
         if len(self.size) != wanted or not all(math.isfinite(x) and x > 0 for x in self.size):
             raise InputError(f"a {self.shape} has {wanted} size(s) above 0 mm; {self.size} is none")
 
@@ -75,6 +79,7 @@ LEARNED = (
 )
 #: What the paper reconstructs.
 PAPER = (Solid(SPHERE, (45.0,)), Solid(CYLINDER, (30.0, 120.0)), Solid(CUBOID, (60.0, 80.0, 90.0)))
+STRANGE = (Solid(CONE, (50.0, 120.0)), Solid(PRISM, (25.0, 120.0)), Solid(ELLIPSOID, (25.0, 45.0, 60.0)))
 NEW = (Solid(SPHERE, (37.0,)), Solid(CYLINDER, (35.0, 120.0)), Solid(CUBOID, (55.0, 65.0, 90.0)))
 
 
@@ -273,6 +278,8 @@ def _surface(solid: Solid, way: FloatArray, along: float) -> tuple[FloatArray, F
         out = way + np.array([0, 0, along / radius])
         out = out / np.linalg.norm(out)
         return radius * out, out
+    if solid.shape in (CONE, PRISM, ELLIPSOID):
+        return _strange_surface(solid, way, along)
     upright = abs(way[2]) < math.sqrt(0.5)
     if solid.shape == CYLINDER:
         radius, height = solid.size
@@ -289,6 +296,23 @@ def _surface(solid: Solid, way: FloatArray, along: float) -> tuple[FloatArray, F
     out = np.zeros(3)
     out[axis] = math.copysign(1, way[axis])
     return np.clip(point, -half, half), out
+
+
+def _strange_surface(solid: Solid, way: FloatArray, along: float) -> tuple[FloatArray, FloatArray]:
+    """As `_surface`, from the side."""
+    size = np.array(solid.size)
+    if solid.shape == ELLIPSOID:
+        out = way + np.array([0, 0, along / size[2]])
+        point = out / math.sqrt(float(((out / size) ** 2).sum()))
+        return point, point / size**2 / np.linalg.norm(point / size**2)
+    height = min(max(along, -0.45 * size[1]), 0.45 * size[1])
+    flat = np.array([way[0], way[1], 0]) / math.hypot(way[0], way[1])
+    if solid.shape == CONE:
+        radius, slope = size[0] * (0.5 - height / size[1]), size[0] / size[1]
+        return radius * flat + [0, 0, height], (flat + np.array([0, 0, slope])) / math.hypot(1, slope)
+    sides = [np.array([math.cos(a), math.sin(a), 0.0]) for a in 2 * math.pi * np.arange(3) / 3]
+    side = max(sides, key=lambda each: float(each @ flat))
+    return flat * size[0] / float(flat @ side) + [0, 0, height], side
 
 
 def _frames(axes: FloatArray, rng: np.random.Generator) -> Rotation:

@@ -6,6 +6,7 @@ object. Here: how badly the best sphere, cylinder and cuboid miss the contacts, 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -29,8 +30,10 @@ CONFIDENCE = 0.9
 MOST_GRASPS = 4
 #: What `Decision.shape` is where the contacts are of none of the three.
 NONE = "none of these"
-#: So large a part of the grasps learned from fits better than what is taken for none.
+#: So large a part of the grasps learned from fits some shape better than what is taken for none ...
 KNOWN = 0.99
+#: ... and one of a shape misses it by more than what is taken for none no oftener than this (or once in all of them and one more).
+STRANGE_CHANCE = 0.05
 #: Hidden sigmoids: the paper's, and what three features need (docs/force.md).
 PUBLISHED_HIDDEN, HIDDEN = 50, 3
 #: Weight decay of each: what serves its own features best.
@@ -38,7 +41,7 @@ PUBLISHED_DECAY, DECAY = 3e-3, 1e-3
 #: A misfit is no smaller: exact contacts would have none, and no logarithm.
 _LEAST_MISFIT = 1e-3
 
-KIND, VERSION = "force shape", 1
+KIND, VERSION = "force shape", 2
 
 
 def raw_features(found: Touches) -> FloatArray:
@@ -64,9 +67,37 @@ def misfit_features(found: Touches) -> FloatArray:
     return np.log([max(FITS[shape](found.point, found.normal).misfit, _LEAST_MISFIT) for shape in SHAPES])
 
 
-def least_misfit(found: Touches) -> float:
-    """How badly the best of the three shapes misses the contacts: about 1 where it is one of them."""
-    return float(np.exp(misfit_features(found).min()))
+def misfit_limits(misfits: FloatArray, shape: IntArray) -> FloatArray:
+    """(4,) limits of the misfit of a sphere, a cylinder and a cuboid, each by its own grasps, and of the best of the three by all.
+
+    The first three are order statistics (split conformal prediction): one more grasp of a shape misses it by more than its limit with
+    a probability of at most `STRANGE_CHANCE`, or of 1 / (n + 1) where there are too few.
+
+    Parameters
+    ----------
+    misfits : (n, 3) float
+        Logarithms, see `misfit_features`.
+    shape : (n,) int
+
+    Examples
+    --------
+    >>> own = np.log(np.arange(1.0, 40.0))
+    >>> misfit_limits(np.column_stack([own, own + 9, own + 9]), np.zeros(39, dtype=int))[:2].round(6).tolist()
+    [38.0, inf]
+    """
+    out = np.full(len(SHAPES) + 1, np.inf)
+    for k in range(len(SHAPES)):
+        own = np.sort(misfits[shape == k, k])
+        if len(own):
+            out[k] = own[-max(int(STRANGE_CHANCE * (len(own) + 1)), 1)]
+    out[-1] = np.quantile(misfits.min(axis=1), KNOWN)
+    return np.exp(out)
+
+
+def is_strange(misfits: FloatArray, likely: IntArray, limits: FloatArray) -> NDArray[np.bool_]:
+    """Which grasps (n,) are of none of the three: no shape fits, or not the one that they are said to be of."""
+    own = misfits[np.arange(len(misfits)), likely]
+    return np.asarray((np.exp(misfits.min(axis=1)) > limits[-1]) | (np.exp(own) > limits[likely]))
 
 
 FEATURES: dict[str, Callable[[Touches], FloatArray]] = {
@@ -97,6 +128,12 @@ class ShapeModel:
         """(n, 3) of each grasp being of each of `SHAPES`."""
         return self.network.probability(features_of(found, self.features))
 
+    @property
+    def limits(self) -> FloatArray:
+        """See `misfit_limits`; infinite where the model has none, as one of version 1 has none of each shape."""
+        default = [math.inf] * len(SHAPES) + [float(self.facts.get("misfit_limit", math.inf))]
+        return np.array(self.facts.get("misfit_limits", default), dtype=float)
+
     def save(self, path: str | Path) -> None:
         """Write it as arrays and JSON."""
         net = self.network
@@ -120,6 +157,8 @@ class ShapeModel:
             network = Network(*(saved.arrays[name] for name in ("mean", "scale", "hidden", "output")))
         except (KeyError, AttributeError, TypeError, ValueError) as fault:
             raise InputError(f"{path} lacks a part of a model of shapes ({fault}); train it again") from fault
+        if (limits := facts.get("misfit_limits")) is not None and not (isinstance(limits, list) and len(limits) == len(SHAPES) + 1):
+            raise InputError(f"{path}: its limits of the misfit are {limits}, which are none; train it again")
         if features not in FEATURES or shapes != list(SHAPES) or network.output.shape[1] != len(SHAPES):
             raise InputError(f"{path} is a model of {shapes} by {features!r} features, which are not known here; train it again")
         return cls(features, network, facts)
@@ -143,7 +182,7 @@ class Decision:
     Parameters
     ----------
     shape : str
-        The likeliest, or `NONE`: even the best of the three misses the contacts by more than it misses 99 % of those learned from.
+        The likeliest, or `NONE`: it misses the contacts by more than those of 95 % of its own grasps, see `misfit_limits`.
     confidence : float
     grasps : int
         So many it took.
@@ -169,7 +208,7 @@ def decide(model: ShapeModel, grasps: Sequence[Grasp], *, confidence: float = CO
         There is no grasp, or all are faulty.
     """
     weight, taken, strange = np.zeros(len(SHAPES)), 0, 0
-    limit = float(model.facts.get("misfit_limit", np.inf))
+    limits = model.limits
     probability = np.full(len(SHAPES), 1 / len(SHAPES))
     faults = []
     for each in grasps:
@@ -178,10 +217,11 @@ def decide(model: ShapeModel, grasps: Sequence[Grasp], *, confidence: float = CO
             faults.append(found.fault)
             continue
         taken += 1
-        if least_misfit(found) > limit:
+        said = model.probability([found])[0]
+        if is_strange(misfit_features(found)[None], said.argmax(keepdims=True), limits)[0]:
             strange += 1
             continue
-        weight = weight + np.log(np.maximum(model.probability([found])[0], np.finfo(float).tiny))
+        weight = weight + np.log(np.maximum(said, np.finfo(float).tiny))
         probability = np.exp(weight - weight.max())
         probability /= probability.sum()
         if probability.max() >= confidence and 2 * strange < taken:

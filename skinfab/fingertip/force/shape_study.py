@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -13,7 +12,7 @@ from skinfab.errors import InputError
 from skinfab.fingertip.confusion import Confusion, grouped_accuracy
 from skinfab.fingertip.force.grasp import SHAPES, Grasp, Touches, touches
 from skinfab.fingertip.force.network import Network
-from skinfab.fingertip.force.shape import KNOWN, ShapeModel, features_of, fit_shapes, least_misfit
+from skinfab.fingertip.force.shape import ShapeModel, features_of, fit_shapes, is_strange, misfit_limits
 from skinfab.fingertip.splits import leave_one_out
 from skinfab.rates import Rate
 
@@ -120,16 +119,20 @@ def train_shapes(of: Examples, features: str, *, seed: int = 0) -> tuple[ShapeMo
     out = np.empty((len(X), len(SHAPES)))
     for train, test in leave_one_out(of.object.tolist()):
         out[test] = fit_shapes(X[train], of.shape[train], features, seed=seed).probability(X[test])
-    misfit = np.array([least_misfit(each) for each in of.found])
-    limit = float(np.quantile(misfit, KNOWN))
-    held = HeldOut(out, of.shape, of.object, misfit > limit)
+    misfits = X if features == "misfits" else features_of(of.found, "misfits")
+    limits = misfit_limits(misfits, of.shape)  # no fit learns, so that each grasp is judged by what hardly knows it
+    held = HeldOut(out, of.shape, of.object, is_strange(misfits, out.argmax(axis=1), limits))
     rate = held.accuracy
     facts = {"grasps": len(X), "objects": len(set(of.object.tolist())), "seed": seed, "held_out": [rate.value, rate.low, rate.high]}
-    facts["misfit_limit"] = limit  # no fit learns, so that each grasp is judged by what does not know it
+    facts["misfit_limits"] = limits.tolist()
     return ShapeModel(features, fit_shapes(X, of.shape, features, seed=seed), facts), held
 
 
-def judged(network: Network, of: Examples, features: str, *, limit: float = np.inf) -> HeldOut:
-    """What a network says of other objects' grasps; those that no shape fits better than `limit` are of none of the three."""
-    strange = np.array([math.isfinite(limit) and least_misfit(each) > limit for each in of.found])
-    return HeldOut(network.probability(features_of(of.found, features)), of.shape, of.object, strange)
+def judged(network: Network, of: Examples, features: str, *, limits: FloatArray | None = None) -> HeldOut:
+    """What a network says of other objects' grasps; where `misfit_limits` are given, strange ones are of none of the three."""
+    X = features_of(of.found, features)
+    said = network.probability(X)
+    strange = np.zeros(len(X), dtype=bool)
+    if limits is not None:
+        strange = is_strange(X if features == "misfits" else features_of(of.found, "misfits"), said.argmax(axis=1), limits)
+    return HeldOut(said, of.shape, of.object, strange)

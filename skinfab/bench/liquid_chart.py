@@ -1,0 +1,60 @@
+"""The chart of liquids: what is found over the water there is, and false alarms under each condition."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from skinfab.bench.charts import png
+from skinfab.files import atomic_write
+from skinfab.fingertip.force.liquid import FALSE_ALARM
+
+_COLOURS = {"wander": "#D55E00", "spectrum": "#0072B2", "learned": "#009E73"}
+_LABELS = {"wander": "how far lines wander", "spectrum": "line in the spectrum (default)", "learned": "the same, limit learned"}
+_DPI = 150
+#: Where no false alarm at all is drawn on a logarithmic axis.
+_FLOOR = 1e-3
+
+
+def draw(table: Sequence[Mapping[str, Any]], path: Path) -> None:
+    """Write the chart as PNG: found over grams in a still and in a trembling hand, and false alarms."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(12.5, 4.2), dpi=_DPI, layout="constrained")
+    FigureCanvasAgg(figure)
+    figure.suptitle("Is there a liquid in the cup? Water that swings, found and made up (simulated)", fontsize=10)
+    *panels, alarms = figure.subplots(1, 3)
+    conditions = list(dict.fromkeys(row["condition"] for row in table))
+    for axes, condition in zip(panels, (conditions[0], conditions[-1]), strict=True):
+        for rule, colour in _COLOURS.items():
+            for angle, line in zip(sorted({row["angle_deg"] for row in table} - {0.0}), ("--", "-"), strict=False):
+                rows = [r for r in table if (r["condition"], r["rule"], r["angle_deg"]) == (condition, rule, angle)]
+                label = f"{_LABELS[rule]}, {angle:g}°"
+                axes.plot([r["grams"] for r in rows], [r["found"] for r in rows], line, marker="o", ms=4, lw=1, color=colour, label=label)
+        ticks = sorted({row["grams"] for row in table} - {0})
+        axes.set_xscale("log")
+        axes.set_xticks(ticks, [f"{each:g}" for each in ticks])
+        axes.minorticks_off()
+        axes.set(xlabel="g of water", ylim=(-0.02, 1.02), title=f"{condition}")
+        axes.title.set_size(9)
+    panels[0].set_ylabel("cups found")
+    panels[1].legend(fontsize=7, loc="upper left")
+    for k, (rule, colour) in enumerate(_COLOURS.items()):
+        rows = [next(r for r in table if (r["condition"], r["rule"], r["grams"]) == (condition, rule, 0)) for condition in conditions]
+        place = [j + 0.2 * (k - 1) for j in range(len(rows))]
+        found, low, high = ([max(r[key], _FLOOR) for r in rows] for key in ("found", "low", "high"))
+        alarms.plot(place, found, "o", color=colour, ms=5, label=_LABELS[rule])
+        alarms.vlines(place, low, high, color=colour, lw=1)
+    alarms.axhline(FALSE_ALARM, color="#555555", lw=1, ls="--", label=f"wanted: {FALSE_ALARM:.0%}")
+    alarms.set_yscale("log")
+    alarms.set_xticks(range(len(conditions)), [each.replace(" ", "\n", 1) for each in conditions], fontsize=8)
+    alarms.set(
+        ylabel="empty cups taken for full ones, 95 % intervals", ylim=(0.8 * _FLOOR, 1.2), title=f"false alarms (none at {_FLOOR:g})"
+    )
+    alarms.title.set_size(9)
+    alarms.legend(fontsize=7, loc="upper left")
+    for axes in figure.axes:
+        axes.grid(True, lw=0.3, alpha=0.6)
+    atomic_write(path, png(figure))
