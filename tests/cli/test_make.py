@@ -74,7 +74,7 @@ def test_as_flat_as_published(made: tuple[str, Path, dict]) -> None:
     V, UV, F, FT = results.read_flat_obj(folder / "flat.obj")
     assert len(F) == report["mesh"]["n_faces"]
     mean, flipped = results.distortion(V, UV, F, FT)
-    assert mean <= PUBLISHED[name] + 1e-6
+    assert mean <= PUBLISHED[name] + 1e-6 and (name != "grip" or len(report["pieces"]) <= 2)
     assert mean == pytest.approx(report["distortion"]["mean"], abs=1e-6)
     assert flipped == 0 == sum(p["flipped"] for p in report["pieces"])
     assert results.overlap(UV, FT) < 1e-6

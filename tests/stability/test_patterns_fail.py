@@ -82,7 +82,7 @@ def test_chords_hide_an_overhang() -> None:
     spiral = ContactSpiral(n=3, x=3.2, b=8, l=8, s=45, pad=0)
     no_margin = dataclasses.replace(MATERIAL, margin=0.0)
     hidden = []
-    for angle in np.deg2rad(np.arange(0, 360, 5)):
+    for angle in np.deg2rad(np.arange(0, 360, 10)):
         sensor = Sensor("C1", "P1", spiral, 0.0, 0.0, angle, 0)
         ink = chords(sensor, 0.25).buffer(BEAD / 2, quad_segs=2)
         # As far to the left as its chords allow.
@@ -151,7 +151,7 @@ def test_touching_is_allowed_at_any_angle(margin: float) -> None:
     material = dataclasses.replace(MATERIAL, margin=margin)
     lowest = spiral.b / 2 - spiral.s / 2
     plain, ours, nearer = [], [], []
-    for turn in np.linspace(0, 2 * np.pi, 90, endpoint=False):
+    for turn in np.linspace(0, 2 * np.pi, 40, endpoint=False):
         _, piece = square(60, turn=turn, step=60)
 
         def put(y: float, turn: float = turn) -> Sensor:
