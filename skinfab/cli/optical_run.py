@@ -50,6 +50,8 @@ def run(args: argparse.Namespace) -> int:
     if args.seconds is not None and args.camera is None:
         args.wrong_usage("--seconds is for a camera")
     require_apart(args.output, FILES, [path for path in (args.images, args.model) if path is not None])
+    if args.images is not None and args.images.is_dir() and args.output.resolve() == args.images.resolve():
+        raise InputError(f"{args.output} holds the pictures, and the figure would be taken for one of them; give another folder by -o")
     model, made_from = load_edge(args.model)
     source = EdgeSource(_images(args), model)
     felt, spent = _felt(args, source)
@@ -128,7 +130,7 @@ def _words(frame: Frame) -> str:
 def _facts(images: ImageSource, felt: list[tuple[Picture, Frame]], spent: list[float], *, simulated: bool) -> dict[str, Any]:
     sure = sum(float(frame.values[3]) > _SURE for _, frame in felt)
     notes = list(images.notes)
-    for count, how in ((images.counts.lost, "lost"), (images.counts.bad, "unreadable")):
+    for count, how in ((images.counts.lost, "lost"), (images.counts.bad, "unreadable or of another size")):
         if count:
             notes.append(f"{count} pictures were {how}")
     if sure < len(felt):

@@ -14,7 +14,7 @@ from skinfab.cli import steps
 
 if TYPE_CHECKING:
     from skinfab.fingertip.optical.judge import Error
-    from skinfab.fingertip.optical.targets import Targets
+    from skinfab.fingertip.optical.targets import Columns, Targets
 
 FILES = ("errors.csv", "model.npz", "result.json", "train.png")
 
@@ -42,10 +42,11 @@ def run(args: argparse.Namespace) -> int:
     """Learn, judge, write, and say how good it is."""
     from skinfab.files import atomic_write, require_apart
     from skinfab.fingertip.optical.figure import draw_training
-    from skinfab.fingertip.optical.judge import errors, held_out, off_by, said
+    from skinfab.fingertip.optical.judge import SURE, errors, guessed, held_out, off_by, said
     from skinfab.fingertip.optical.model_file import save_edge
     from skinfab.fingertip.optical.picture import read_picture
     from skinfab.fingertip.optical.regress import Examples, learn
+    from skinfab.fingertip.optical.targets import fit_to_learn
     from skinfab.progress import terminal_progress
     from skinfab.staging import staged_folder
 
@@ -55,7 +56,7 @@ def run(args: argparse.Namespace) -> int:
     require_apart(args.output, FILES, inputs)
     with terminal_progress(quiet=args.json) as progress:
         progress(0.0, "reading")
-        learned = _drawn(_read(args, args.targets, args.images), args.count, args.seed)
+        learned = fit_to_learn(_drawn(_read(args, args.targets, args.images), args.count, args.seed), _columns(args))
         rest = read_picture(args.rest)[0] if args.rest else None
         examples = Examples.of(learned.images, learned.edges, rest=rest)
         progress(0.3, "learning")
@@ -69,9 +70,11 @@ def run(args: argparse.Namespace) -> int:
             _require_unseen(args, learned, judged)
             seen = Examples.of(judged.images, judged.edges, pins=model.pins)
             edges = said(model, seen)
-        off = off_by(edges, seen.truth if seen.truth.shape[1] == examples.truth.shape[1] else seen.truth[:, :3])
-        found = errors(off, judged.groups)
-    result = _facts(args, learned, judged, found, by) | {"pins": len(model.pins.rest), "gamma": model.gamma, "ridge": model.ridge}
+        truth = seen.truth if seen.truth.shape[1] == examples.truth.shape[1] else seen.truth[:, :3]
+        off, confidence = off_by(edges, truth), [edge.confidence for edge in edges]
+        found = errors(off, judged.groups, guess=guessed(examples.truth[:, : truth.shape[1]], truth), confidence=confidence)
+    sure = sum(each > SURE for each in confidence)
+    result = _facts(args, learned, judged, found, by, sure) | {"pins": len(model.pins.rest), "gamma": model.gamma, "ridge": model.ridge}
     with staged_folder(args.output) as folder:
         save_edge(folder / "model.npz", model, {key: result[key] for key in ("simulated", "targets", "images", "held_out")})
         atomic_write(folder / "errors.csv", _table(found, result["simulated"]))
@@ -84,16 +87,24 @@ def run(args: argparse.Namespace) -> int:
     made = " (simulated)" if result["simulated"] else ""
     print(f"{len(learned.images)} images{made} of {len(model.pins.rest)} pins; mean absolute error on what was held out ({by}):")
     for each in found:
-        print(f"  {each.quantity:6s} {each.mean:.3g} [{each.low:.3g}, {each.high:.3g}] {each.unit}, 95 % within {each.p95:.3g}")
+        where = "" if each.sure is None else f"; {each.sure:.3g} where more than half sure"
+        words = f"{each.mean:.3g} [{each.low:.3g}, {each.high:.3g}] {each.unit}, 95 % within {each.p95:.3g}{where}"
+        print(f"  {each.quantity:6s} {words} (a guess: {each.guess:.3g})")
+    print(f"  more than half sure of {sure} of {len(edges)}")
     print(f"{args.output}: {', '.join(FILES)}")
     return 0
 
 
 def _read(args: argparse.Namespace, table: Path, folder: Path | None) -> Targets:
-    from skinfab.fingertip.optical.targets import Columns, read_targets
+    from skinfab.fingertip.optical.targets import read_targets
 
-    columns = Columns(args.image_column, args.offset_column, args.angle_column, args.depth_column, args.group_column)
-    return read_targets(table, folder, columns=columns)
+    return read_targets(table, folder, columns=_columns(args))
+
+
+def _columns(args: argparse.Namespace) -> Columns:
+    from skinfab.fingertip.optical.targets import Columns
+
+    return Columns(args.image_column, args.offset_column, args.angle_column, args.depth_column, args.group_column)
 
 
 def _drawn(targets: Targets, count: int | None, seed: int) -> Targets:
@@ -125,19 +136,27 @@ def _require_unseen(args: argparse.Namespace, learned: Targets, judged: Targets)
             raise InputError(f"image {name} of {args.test_targets} is {other} of {args.targets}, which was learned from; leave it out")
 
 
-def _facts(args: argparse.Namespace, learned: Targets, judged: Targets, found: Sequence[Error], by: str) -> dict[str, Any]:
+def _facts(args: argparse.Namespace, learned: Targets, judged: Targets, found: Sequence[Error], by: str, sure: int) -> dict[str, Any]:
+    notes = [
+        f"{e.quantity}: {e.mean:.3g} {e.unit} off, and {e.guess:.3g} would be who says the same of every image: nothing was learned of it; "
+        "look whether the table's columns and rows are those of the images"
+        for e in found
+        if e.chance
+    ]
     return {
         "simulated": learned.simulated or judged.simulated,
         "targets": {"file": args.targets.name, "sha256": hashlib.sha256(args.targets.read_bytes()).hexdigest()},
         "images": len(learned.images),
         "groups": len(set(learned.groups)),
-        "held_out": {"by": by, "images": len(judged.images), "errors": [asdict(each) for each in found]},
-        "notes": list(learned.notes),
+        "held_out": {"by": by, "images": len(judged.images), "sure": sure, "errors": [asdict(each) for each in found]},
+        "notes": [*learned.notes, *notes],
     }
 
 
 def _table(found: Sequence[Error], simulated: bool) -> str:
-    lines = ["quantity,unit,mean,low,high,p95,images,simulated"]
+    lines = ["quantity,unit,mean,low,high,p95,guess,sure,images,simulated"]
     for e in found:
-        lines.append(f"{e.quantity},{e.unit},{e.mean:.6g},{e.low:.6g},{e.high:.6g},{e.p95:.6g},{e.images},{int(simulated)}")
+        sure = "" if e.sure is None else f"{e.sure:.6g}"
+        numbers = ",".join(f"{value:.6g}" for value in (e.mean, e.low, e.high, e.p95, e.guess))
+        lines.append(f"{e.quantity},{e.unit},{numbers},{sure},{e.images},{int(simulated)}")
     return "\n".join(lines) + "\n"

@@ -34,13 +34,40 @@ def test_the_same_seed_gives_the_same_images(tmp_path: Path) -> None:
     assert (tmp_path / "a/targets.csv").read_bytes() == (tmp_path / "b/targets.csv").read_bytes()
 
 
+def test_depths_are_those_asked_for(tmp_path: Path) -> None:
+    assert simulate(tmp_path, "--depth", "1.0", "1.2", "--json") == 0
+    rows = list(csv.DictReader((tmp_path / "targets.csv").read_text().splitlines()))
+    assert {1.0 <= float(row["depth_mm"]) <= 1.2 for row in rows} == {True}
+    assert max(abs(float(row["offset_mm"])) for row in rows) < 8  # a lighter touch reaches less far
+
+
+def test_pictures_of_another_run_are_not_mixed_in(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert simulate(tmp_path) == simulate(tmp_path, "--seed", "1") == 0  # as many take the place of those before
+    before = (tmp_path / "targets.csv").read_bytes()
+    capsys.readouterr()
+    assert simulate(tmp_path, "--images", "5") == 1
+    assert "holds 7 others already (00006.png, ...)" in capsys.readouterr().err
+    assert (tmp_path / "targets.csv").read_bytes() == before
+
+
 def test_the_seeds_dome_has_more_pins(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["optical", "simulate", "--images", "1", "--paper", "--shear", "0", "-o", str(tmp_path)]) == 0
     assert "271 pins" in capsys.readouterr().out
     assert cv2.imread(str(tmp_path / "images/00001.png"), cv2.IMREAD_GRAYSCALE).shape == (440, 440)
 
 
-@pytest.mark.parametrize("words", [["--reach", "21"], ["--reach", "far"], ["--shear", "-1"], ["--images", "0"]])
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["--reach", "21"],
+        ["--reach", "far"],
+        ["--shear", "-1"],
+        ["--images", "0"],
+        ["--depth", "2", "1"],
+        ["--depth", "0", "1"],
+        ["--depth", "1", "4"],
+    ],
+)
 def test_wrong_words_are_wrong_usage(words: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert simulate(tmp_path / "a", *words) == 2
     assert capsys.readouterr().err and not (tmp_path / "a").exists()

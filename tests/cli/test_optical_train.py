@@ -5,6 +5,7 @@ import csv
 import io
 import json
 import shutil
+from collections.abc import Callable
 from pathlib import Path
 
 import cv2
@@ -23,7 +24,7 @@ def rows(path: Path) -> list[dict[str, str]]:
 def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("optical")
     with contextlib.redirect_stdout(io.StringIO()):
-        assert main(["optical", "simulate", "--images", "100", "--reach", "3", "-o", str(folder / "sim")]) == 0
+        assert main(["optical", "simulate", "--images", "100", "--reach", "3", "--depth", "1.6", "2.4", "-o", str(folder / "sim")]) == 0
         assert main(["optical", "train", "--targets", str(folder / "sim/targets.csv"), "-o", str(folder / "train")]) == 0
     return folder
 
@@ -32,10 +33,11 @@ def test_held_out_errors_are_told(made: Path) -> None:
     assert sorted(each.name for each in (made / "train").iterdir()) == TRAIN
     result = json.loads((made / "train/result.json").read_text())
     assert result["simulated"] and result["images"] == 100 and result["groups"] == 10 and result["pins"] == 127
+    assert not result["notes"] and 0 < result["held_out"]["sure"] <= 100
     table = rows(made / "train/errors.csv")
     assert [row["quantity"] for row in table] == ["offset", "depth", "angle"] and {row["simulated"] for row in table} == {"1"}
     for row in table:
-        assert float(row["low"]) < float(row["mean"]) < float(row["high"])
+        assert float(row["low"]) < float(row["mean"]) < float(row["high"]) < float(row["guess"])
     assert float(table[0]["mean"]) < 0.8
 
 
@@ -65,10 +67,17 @@ def test_tables_that_cannot_be_used_are_refused(made: Path, tmp_path: Path, caps
     whole, lines = (tmp_path / "images/00007.png").read_bytes(), text.splitlines()
     for wrong, words in (
         (text, "00007.png is no picture"),
-        (text.replace("images/00009", "images/x"), "x.png: No such file"),
+        (text.replace("images/00009", "images/x"), "images/x.png: No such file"),
         ("\n".join([*lines[:3], lines[2]]), "twice"),
         (text.replace("offset_mm", "off"), "has no column 'offset_mm'"),
         ("\n".join([lines[0], lines[1].replace(",0.", ",?", 1).replace(",1", ",x"), *lines[2:]]), "is not a number"),
+        ("\n".join([*lines, lines[1].replace("images/", "./images/")]), "'./images/00001.png' twice (as 'images/00001.png' first)"),
+        (
+            "\n".join([lines[0], *(line.replace(",", ";").replace(".", ",").replace(",png", ".png") for line in lines[1:])]).replace(
+                lines[0], lines[0].replace(",", ";")
+            ),
+            "has a decimal comma; write a point",
+        ),
         (lines[0], "has no rows"),
     ):
         (tmp_path / "targets.csv").write_text(wrong)
@@ -76,6 +85,34 @@ def test_tables_that_cannot_be_used_are_refused(made: Path, tmp_path: Path, caps
         assert main(["optical", "train", "--targets", str(tmp_path / "targets.csv"), "-o", str(tmp_path / "out")]) == 1
         assert words in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
+
+
+def test_chance_is_named_and_a_constant_refused(made: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    table = rows(made / "sim/targets.csv")
+    words = ["optical", "train", "--images", str(made / "sim/images"), "--targets", str(tmp_path / "t.csv"), "-o", str(tmp_path / "out")]
+    others = iter(table[37:] + table[:37])
+    rewritten(table, tmp_path / "t.csv", lambda _: float(next(others)["offset_mm"]))
+    assert main(words) == 0
+    out = capsys.readouterr()
+    assert "offset: " in out.err and "who says the same of every image: nothing was learned" in out.err and "depth: " not in out.err
+    assert out.out.count("(a guess: ") == 3 and "more than half sure of" in out.out
+    rewritten(table, tmp_path / "t.csv", lambda _: 2.5)
+    assert main([*words[:-1], str(tmp_path / "none")]) == 1
+    assert "'offset_mm' is 2.5 in all images" in capsys.readouterr().err and not (tmp_path / "none").exists()
+
+
+def rewritten(table: list[dict[str, str]], path: Path, offset: Callable[[float], float]) -> None:
+    """The table with other offsets."""
+    with path.open("w", newline="") as file:
+        writer = csv.DictWriter(file, list(table[0]))
+        writer.writeheader()
+        writer.writerows({**row, "offset_mm": offset(float(row["offset_mm"]))} for row in table)
+
+
+def test_results_do_not_go_among_the_pictures(made: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = made / "sim/images"
+    assert main(["optical", "run", str(folder), "--model", str(made / "train/model.npz"), "-o", f"{folder}/../images"]) == 1
+    assert "holds the pictures" in capsys.readouterr().err and not (folder / "optical.png").exists()
 
 
 def test_a_folder_and_a_video_are_read(made: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -120,7 +120,7 @@ def follow_published(robot: Robot, *, step_mm: float = STEP_MM, plate_is_white: 
     Parameters
     ----------
     robot : Robot
-        On the edge, or near it.
+        On the edge, or near it. Its pictures' columns and rows lie along its x and y (see `Robot`).
     step_mm : float
     plate_is_white : bool
         See `published.feature`.

@@ -18,7 +18,7 @@ import cv2
 import numpy as np
 
 from skinfab.errors import InputError
-from skinfab.fingertip.optical.picture import SUFFIXES, read_picture
+from skinfab.fingertip.optical.picture import SUFFIXES, opencv_silent, read_picture
 from skinfab.fingertip.optical.pins import Image
 from skinfab.readout.source import Counts, HostClock
 
@@ -163,6 +163,12 @@ class FolderImages(_Pictures):
             return Picture(image, path.name, k / self.rate_hz, self._clock.now(), k)
         self.ended = True
         return None
+
+    def pass_over(self, picture: Picture, why: str) -> None:
+        """Count the last picture among the bad ones after all, and say why."""
+        self.counts = replace(self.counts, frames=self.counts.frames - 1, bad=self.counts.bad + 1)
+        height, width = picture.image.shape
+        self.notes.append(f"{picture.name} is of {width} x {height} pixels, {why}; it was passed over")
 
 
 def read_any_simulated(files: list[Path]) -> bool:
@@ -309,14 +315,9 @@ class CameraImages(_Pictures):
 
 
 def _opened(what: int | str, wrong: str) -> Any:
-    """A capture of OpenCV, whose own warnings say nothing that the error does not."""
-    log = cv2.utils.logging
-    before = log.getLogLevel()
-    log.setLogLevel(log.LOG_LEVEL_SILENT)
-    try:
+    """A capture of OpenCV."""
+    with opencv_silent():
         capture = cv2.VideoCapture(what)
-    finally:
-        log.setLogLevel(before)
     if not capture.isOpened():
         capture.release()
         raise InputError(wrong)

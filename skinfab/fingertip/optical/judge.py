@@ -20,6 +20,10 @@ FloatArray = NDArray[np.float64]
 QUANTITIES = {"offset": "mm", "depth": "mm", "angle": "deg"}
 #: Parts that groups are dealt out to.
 FOLDS = 5
+#: What is off by more than this part of what a guess is off by tells nothing.
+CHANCE = 0.8
+#: Called sure above this confidence.
+SURE = 0.5
 
 
 @dataclass(frozen=True)
@@ -33,6 +37,10 @@ class Error:
         And the mean's 95 % interval, by drawing whole groups anew.
     p95 : float
         Five in a hundred are worse.
+    guess : float
+        Mean error of saying the same of every image, without a look at it.
+    sure : float or None
+        Mean over the images that are called more than half sure; None where there are none.
     images : int
     """
 
@@ -42,7 +50,14 @@ class Error:
     low: float
     high: float
     p95: float
+    guess: float
+    sure: float | None
     images: int
+
+    @property
+    def chance(self) -> bool:
+        """Is it no better than guessing?"""
+        return self.mean > CHANCE * self.guess
 
 
 def said(model: EdgeModel, examples: Examples) -> list[Edge]:
@@ -87,13 +102,28 @@ def off_by(edges: Sequence[Edge], truth: FloatArray) -> FloatArray:
     return np.c_[said_[:, 0] - truth[:, 0], depth, np.degrees(turn)]
 
 
-def errors(off: FloatArray, groups: Sequence[Hashable], *, seed: int = 0) -> list[Error]:
-    """Sum up signed errors (n, 3); what is known of no image is left out."""
+def guessed(learned: FloatArray, truth: FloatArray) -> FloatArray:
+    """What saying the mean of all that was learned of every image is off by: as `off_by`, which takes the same truths.
+
+    Examples
+    --------
+    >>> learned = np.array([[1.0, 1.0, 0.0], [3.0, 1.0, 0.0]])
+    >>> guessed(learned, np.array([[4.0, 0.0, 1.0]])).round(3).tolist()
+    [[-2.0, nan, -90.0]]
+    """
+    mean = learned.mean(axis=0)
+    depth = float(mean[3]) if len(mean) == 4 else math.nan
+    return off_by([Edge(float(mean[0]), math.atan2(mean[2], mean[1]), depth)] * len(truth), truth)
+
+
+def errors(off: FloatArray, groups: Sequence[Hashable], *, guess: FloatArray, confidence: Sequence[float], seed: int = 0) -> list[Error]:
+    """Sum up signed errors (n, 3) beside those of `guessed`; what is known of no image is left out."""
     names = list(dict.fromkeys(groups))
     place = {name: k for k, name in enumerate(names)}
     of = np.array([place[each] for each in groups])
     count = np.bincount(of)
     drawn = np.random.default_rng(seed).integers(0, len(names), (DRAWS, len(names)))
+    believed = np.array(confidence) > SURE
     out = []
     for k, (quantity, unit) in enumerate(QUANTITIES.items()):
         size = np.abs(off[:, k])
@@ -101,5 +131,6 @@ def errors(off: FloatArray, groups: Sequence[Hashable], *, seed: int = 0) -> lis
             continue
         total = np.bincount(of, size)
         low, high = np.quantile(total[drawn].sum(axis=1) / count[drawn].sum(axis=1), (0.025, 0.975))
-        out.append(Error(quantity, unit, float(size.mean()), float(low), float(high), float(np.quantile(size, 0.95)), len(off)))
+        means = (float(size.mean()), float(low), float(high), float(np.quantile(size, 0.95)), float(np.abs(guess[:, k]).mean()))
+        out.append(Error(quantity, unit, *means, float(size[believed].mean()) if believed.any() else None, len(off)))
     return out

@@ -53,7 +53,7 @@ def load_edge(path: str | Path) -> tuple[EdgeModel, Mapping[str, Any]]:
         fits = fits and a["spacing"].shape == a["wrong"].shape == (n,) and model.gamma > 0 and model.ridge > 0
         fits = fits and bool((a["spacing"] > 0).all() and ((a["wrong"] >= 0) & (a["wrong"] <= 1)).all())
         fits = fits and len(a["weights"]) == n and a["centre"].shape == (targets,) and targets in (3, 4)
-        fits = fits and bool((a["rest"] >= 0).all() and (a["rest"] <= np.array([width, height])).all() and (a["usual"] > 0).all())
+        fits = fits and bool((a["rest"] >= 0).all() and (a["rest"] <= np.array([width, height]) - 1).all() and (a["usual"] > 0).all())
     except (KeyError, TypeError, ValueError, IndexError) as fault:
         raise InputError(f"{path} is not whole ({type(fault).__name__}: {fault}); train it again, or take another copy") from fault
     if not fits:

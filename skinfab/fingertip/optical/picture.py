@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import cv2
@@ -14,6 +17,19 @@ from skinfab.fingertip.optical.pins import Image
 SUFFIXES = (".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".pgm")
 #: What a simulator writes into its pictures, near their beginning.
 _SIMULATED, _HEAD = b"simulated: true", 4096
+
+
+@contextmanager
+def opencv_silent() -> Iterator[None]:
+    """OpenCV's own warnings, and those of the video reader in it, say nothing that the error does not."""
+    log = cv2.utils.logging
+    before = log.getLogLevel()
+    log.setLogLevel(log.LOG_LEVEL_SILENT)
+    os.environ.setdefault("OPENCV_FFMPEG_LOGLEVEL", "-8")
+    try:
+        yield
+    finally:
+        log.setLogLevel(before)
 
 
 def read_picture(path: str | Path) -> tuple[Image, bool]:
@@ -39,9 +55,15 @@ def read_picture(path: str | Path) -> tuple[Image, bool]:
     except OSError as fault:
         raise InputError(f"{path}: {fault.strerror or fault}; give a picture that can be read") from fault
     try:
-        image = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_GRAYSCALE) if data else None
+        with opencv_silent():
+            image = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_GRAYSCALE) if data and not _cut_off(data) else None
     except cv2.error:
         image = None
     if image is None:
         raise InputError(f"{path} is no picture that can be read; give PNG, JPEG, BMP, TIFF or PGM, whole")
     return image.astype(np.uint8, copy=False), _SIMULATED in data[:_HEAD]
+
+
+def _cut_off(data: bytes) -> bool:
+    """Is it a PNG without its end? libpng would print a line of its own on that, past everything that is set here."""
+    return data.startswith(b"\x89PNG") and b"IEND" not in data[-1024:]

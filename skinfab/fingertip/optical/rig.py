@@ -15,7 +15,12 @@ FloatArray = NDArray[np.float64]
 
 
 class Robot(Protocol):
-    """What a follower needs: to feel, to move, and to know where it believes to be."""
+    """What a follower needs: to feel, to move, and to know where it believes to be.
+
+    Its x and y are those in which the edge is told. `follow_pose` takes what the model's labels say, so those must have been taken in
+    the robot's axes; `follow_published` takes the picture's columns for x and its rows for y, so where the camera is turned or mirrored
+    against the robot, `frame` must turn its pictures back.
+    """
 
     @property
     def at(self) -> FloatArray:

@@ -16,7 +16,7 @@ import numpy as np
 
 from skinfab.errors import InputError
 from skinfab.fingertip.optical.edge import Edge
-from skinfab.fingertip.optical.images import CameraImages, ImageSource, Picture
+from skinfab.fingertip.optical.images import CameraImages, FolderImages, ImageSource, Picture
 from skinfab.fingertip.optical.regress import EdgeModel
 from skinfab.readout.frame import Channel, Frame, Stream
 from skinfab.readout.source import Counts, HostClock, StaleError
@@ -31,7 +31,7 @@ CHANNELS = (
 
 
 class EdgeSource:
-    """Frames of what an optical fingertip feels.
+    """Frames of what an optical fingertip feels; pictures of a folder that are not of the model's size are passed over with a note.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ class EdgeSource:
     Raises
     ------
     InputError
-        On reading: an image is of another size than those of the training.
+        On reading: a video's or camera's images are of another size than those of the training.
     """
 
     def __init__(self, images: ImageSource, model: EdgeModel) -> None:
@@ -65,7 +65,9 @@ class EdgeSource:
 
     def open(self) -> Self:
         """Begin."""
-        self._model.edge(np.zeros(self._model.pins.shape, np.uint8))  # what is worked out once is not to delay the first picture
+        # What is worked out once (whose pixel is which pin's, above all) is not to delay the first picture.
+        self._model.edge_of(self._model.pins.match(self._model.pins.rest))
+        self._model.edge(np.zeros(self._model.pins.shape, np.uint8))
         self.images.open()
         self.stream = replace(self.stream, rate_hz=self.images.rate_hz)
         self.last, self._newest = None, None
@@ -78,6 +80,9 @@ class EdgeSource:
     def read(self, timeout: float | None = None) -> Frame | None:
         """What the next picture shows; None after `timeout` seconds without one, or at the end."""
         picture = self.images.read(timeout)
+        while picture is not None and isinstance(self.images, FolderImages) and picture.image.shape != self._model.pins.shape:
+            self.images.pass_over(picture, "and the model is of {1} x {0}".format(*self._model.pins.shape))
+            picture = self.images.read(timeout)
         if picture is None:
             return None
         self.last, began = picture, time.perf_counter()

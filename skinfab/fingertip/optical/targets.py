@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import csv
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+import re
+from dataclasses import dataclass, replace
 from pathlib import Path
+
+import numpy as np
 
 from skinfab.errors import InputError
 from skinfab.fingertip.optical.edge import Edge
@@ -15,6 +17,10 @@ from skinfab.fingertip.optical.pins import Image
 from skinfab.spreadsheet import read_csv_lines
 
 _MAX_BYTES = 100_000_000
+#: Angles that all lie within this, degrees, may be radians; offsets that all do, mm, may be metres.
+_RADIANS, _METRES = 2 * math.pi + 0.01, 0.05
+#: A number is far from all others that is so many times farther from their middle than nine in ten are.
+_OUTLIER = 10.0
 
 
 @dataclass(frozen=True)
@@ -84,8 +90,12 @@ def read_targets(table: str | Path, folder: str | Path | None = None, *, columns
         if name not in rows[0]:
             raise InputError(f"{table} has no column {name!r}; it has {', '.join(map(repr, rows[0]))}: name the right ones by options")
     names = [row[columns.image] or "" for row in rows]
-    if twice := next((name for name, count in _counts(names).items() if count > 1), None):
-        raise InputError(f"{table} names image {twice!r} twice; it could be learned from and judged on: give one line an image")
+    places = [_place(name, Path(folder) if folder else table.parent) for name in names]
+    first: dict[Path, str] = {}
+    for name, place in zip(names, places, strict=True):
+        if (other := first.setdefault(place.resolve(), name)) is not name:
+            also = "" if other == name else f" (as {other!r} first)"
+            raise InputError(f"{table} names image {name!r} twice{also}; it could be learned from and judged on: give one line an image")
     deep, grouped = columns.depth in rows[0], columns.group in rows[0]
     edges = tuple(
         Edge(
@@ -95,7 +105,7 @@ def read_targets(table: str | Path, folder: str | Path | None = None, *, columns
         )
         for k, row in enumerate(rows)
     )
-    read = [read_picture(_place(name, Path(folder) if folder else table.parent)) for name in names]
+    read = [read_picture(place) for place in places]
     notes = [] if deep else [f"{table.name} has no column {columns.depth!r}: depth is not learned"]
     if not grouped:
         notes.append(f"{table.name} has no column {columns.group!r}: every image counts as a trial of its own")
@@ -104,11 +114,35 @@ def read_targets(table: str | Path, folder: str | Path | None = None, *, columns
     return Targets(tuple(names), tuple(image for image, _ in read), edges, groups, simulated, tuple(notes))
 
 
-def _counts(names: Sequence[str]) -> dict[str, int]:
-    out: dict[str, int] = {}
-    for name in names:
-        out[name] = out.get(name, 0) + 1
-    return out
+def fit_to_learn(targets: Targets, columns: Columns) -> Targets:
+    """The same with notes on numbers that may be of another unit or column; depth is left out where it is always the same.
+
+    Raises
+    ------
+    InputError
+        Offset or angle is the same in all images: a model of it would be perfect and know nothing.
+    """
+    offset, angle, depth = np.array([(e.offset_mm, math.degrees(e.angle_rad), e.depth_mm) for e in targets.edges]).T
+    for values, column, option in ((offset, columns.offset, "--offset-column"), (angle, columns.angle, "--angle-column")):
+        if np.ptp(values) < 1e-9 * max(float(np.abs(values).max()), 1.0):
+            raise InputError(f"column {column!r} is {values[0]:g} in all images, so nothing of it can be learned; name another by {option}")
+    notes = list(targets.notes)
+    if np.abs(angle).max() < _RADIANS:
+        notes.append(f"all of column {columns.angle!r} lies from {angle.min():g} to {angle.max():g}: if these are radians, give degrees")
+    if np.abs(offset).max() < _METRES:
+        notes.append(f"all of column {columns.offset!r} lies from {offset.min():g} to {offset.max():g}: if these are metres, give mm")
+    for values, column in ((offset, columns.offset), (angle, columns.angle), (depth, columns.depth)):
+        apart = np.abs(values - np.median(values))
+        if (far := apart > _OUTLIER * np.quantile(apart, 0.9)).any():
+            k = int(apart.argmax())
+            notes.append(
+                f"{far.sum()} of column {column!r} lie far from all others ({values[k]:g} of {targets.names[k]}): look at these rows"
+            )
+    edges = targets.edges
+    if np.isfinite(depth).all() and np.ptp(depth) < 1e-9 * max(float(np.abs(depth).max()), 1.0):
+        notes.append(f"column {columns.depth!r} is {depth[0]:g} in all images: depth is not learned")
+        edges = tuple(replace(edge, depth_mm=math.nan) for edge in edges)
+    return replace(targets, edges=edges, notes=tuple(notes))
 
 
 def _number(row: dict[str, str], name: str, table: Path, k: int) -> float:
@@ -117,10 +151,13 @@ def _number(row: dict[str, str], name: str, table: Path, k: int) -> float:
     except (TypeError, ValueError):
         value = math.nan
     if not math.isfinite(value):
-        raise InputError(f"{table}, row {k + 1}, column {name!r}: {row[name]!r} is not a number; correct it or leave the row out")
+        why = "has a decimal comma" if re.fullmatch(r"\s*[-+]?\d+,\d+\s*", row[name] or "") else "is not a number"
+        what = "write a point" if "comma" in why else "correct it or leave the row out"
+        raise InputError(f"{table}, row {k + 1}, column {name!r}: {row[name]!r} {why}; {what}")
     return value
 
 
 def _place(name: str, folder: Path) -> Path:
     """A table may name images by their way from itself, although their own folder was given."""
-    return folder / name if (folder / name).exists() else folder / Path(name).name
+    bare = folder / Path(name).name
+    return bare if not (folder / name).exists() and bare.exists() else folder / name

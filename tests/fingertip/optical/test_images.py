@@ -1,6 +1,7 @@
 """Pictures from folders, videos and cameras: in order, with their times, and with what was lost or broken counted and named."""
 
 import itertools
+import shutil
 import time
 from pathlib import Path
 
@@ -11,6 +12,8 @@ import pytest
 from skinfab.errors import InputError
 from skinfab.fingertip.optical.images import WAITING, CameraImages, FolderImages, VideoImages
 from skinfab.fingertip.optical.labelled import labelled
+from skinfab.fingertip.optical.model_file import load_edge, save_edge
+from skinfab.fingertip.optical.picture import read_picture
 from skinfab.fingertip.optical.regress import EdgeModel, train
 from skinfab.fingertip.optical.simulator import Fingertip
 from skinfab.fingertip.optical.source import EdgeSource
@@ -127,7 +130,33 @@ def test_the_newest_frame_has_an_age(model: EdgeModel, pressed: Path) -> None:
         source.read_latest(1.0)
 
 
-def test_a_picture_of_another_size_is_named(model: EdgeModel, tmp_path: Path) -> None:
-    cv2.imwrite(str(tmp_path / "small.png"), numbered(1))
-    with EdgeSource(FolderImages(tmp_path), model) as source, pytest.raises(InputError, match=r"picture small\.png: an image of 64 x 64"):
-        source.read()
+def test_a_picture_of_another_size_is_named_and_the_others_are_read(model: EdgeModel, pressed: Path, video: Path, tmp_path: Path) -> None:
+    shutil.copytree(pressed, tmp_path / "some")
+    cv2.imwrite(str(tmp_path / "some/0a.png"), numbered(1))
+    with EdgeSource(FolderImages(tmp_path / "some"), model) as source:
+        assert len(list(source)) == source.counts.frames == 3 and source.counts.bad == 1
+        assert source.images.notes == ["0a.png is of 64 x 64 pixels, and the model is of 240 x 240; it was passed over"]
+    with EdgeSource(VideoImages(video), model) as source, pytest.raises(InputError, match="an image of 64 x 64 pixels"):
+        source.read()  # none of them will do
+
+
+def test_what_is_worked_out_once_is_there_before_the_first_picture(model: EdgeModel, pressed: Path, tmp_path: Path) -> None:
+    save_edge(tmp_path / "model.npz", model, {})
+    fresh, _ = load_edge(tmp_path / "model.npz")
+    with EdgeSource(FolderImages(pressed), fresh):
+        assert {"_owner", "_near"} <= fresh.pins.__dict__.keys() and {"_support_square", "_scale"} <= fresh.__dict__.keys()
+
+
+def test_opencv_says_nothing_of_its_own(pressed: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    whole = (pressed / "0.png").read_bytes()
+    (tmp_path / "cut.png").write_bytes(whole[: len(whole) // 2])
+    writer = cv2.VideoWriter(str(tmp_path / "whole.mp4"), cv2.VideoWriter_fourcc(*"mp4v"), RATE, (64, 64), False)
+    for k in range(COUNT):
+        writer.write(numbered(k))
+    writer.release()
+    (tmp_path / "cut.mp4").write_bytes((tmp_path / "whole.mp4").read_bytes()[:1000])
+    with pytest.raises(InputError, match="no picture that can be read"):
+        read_picture(tmp_path / "cut.png")
+    with pytest.raises(InputError, match="no video that can be read"):
+        VideoImages(tmp_path / "cut.mp4")
+    assert capfd.readouterr().err == ""

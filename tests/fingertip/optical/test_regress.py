@@ -8,7 +8,7 @@ import pytest
 
 from skinfab.errors import InputError
 from skinfab.fingertip.optical.edge import Edge
-from skinfab.fingertip.optical.judge import errors, held_out, off_by, said
+from skinfab.fingertip.optical.judge import errors, guessed, held_out, off_by, said
 from skinfab.fingertip.optical.labelled import FOLLOWED_MM, labelled
 from skinfab.fingertip.optical.model_file import load_edge, save_edge
 from skinfab.fingertip.optical.plates import HalfPlane
@@ -64,11 +64,15 @@ def test_what_was_not_learned_is_not_sure(model: EdgeModel, other: Examples) -> 
 
 def test_held_out_errors_are_no_smaller_than_those_on_what_was_learned(seen: Examples, model: EdgeModel) -> None:
     groups = [k // 10 for k in range(len(seen))]
-    off = off_by(held_out(seen, groups), seen.truth)
+    felt, guess = held_out(seen, groups), guessed(seen.truth, seen.truth)
+    off, confidence = off_by(felt, seen.truth), [edge.confidence for edge in felt]
     known = off_by(said(model, seen), seen.truth)
     assert np.abs(off[:, 0]).mean() > np.abs(known[:, 0]).mean()
-    for each in errors(off, groups):
+    for each in errors(off, groups, guess=guess, confidence=confidence):
         assert each.low < each.mean < each.high and each.p95 > each.mean and each.images == len(seen)
+        assert each.sure is not None and each.sure <= each.mean < each.guess / 2 and not each.chance
+    for each in errors(np.roll(off, 1, axis=0), groups, guess=off, confidence=[0.0] * len(off)):
+        assert each.sure is None and each.chance and each.guess == pytest.approx(each.mean)
 
 
 def test_depth_is_left_out_where_it_is_not_known() -> None:
@@ -77,7 +81,7 @@ def test_depth_is_left_out_where_it_is_not_known() -> None:
     felt = made.edge(each[0].image)
     assert math.isnan(felt.depth_mm) and math.isfinite(felt.offset_mm)
     off = off_by([felt], np.array([[0.0, 1.0, 0.0]]))
-    assert [e.quantity for e in errors(np.r_[off, off], ["a", "b"])] == ["offset", "angle"]
+    assert [e.quantity for e in errors(np.r_[off, off], ["a", "b"], guess=np.r_[off, off], confidence=[1.0, 1.0])] == ["offset", "angle"]
 
 
 def test_a_model_is_the_same_when_it_is_read_back(model: EdgeModel, tmp_path: Path) -> None:
