@@ -34,6 +34,9 @@ _HEAD = [
     "line_deg",
     "line_sd_deg",
     "line_sure",
+    "radius_mm",
+    "tilt_along_deg",
+    "tilt_around_deg",
     "points",
     "peak_axial_mm",
     "peak_angle_deg",
@@ -156,7 +159,8 @@ def _words(event: Event) -> str:
     '    1.00 s  slip to 1.20 s: +7.0 mm along, -0.5 mm around'
     """
     moved = f" to {event.end:.2f} s: {event.along_mm:+.1f} mm along, {event.around_mm:+.1f} mm around"
-    return f"{event.start:8.2f} s  {event.kind}{moved if event.kind in ('slip', 'roll') else ''}"
+    which = f" of contact {event.number}" if event.number > 1 else ""
+    return f"{event.start:8.2f} s  {event.kind}{which}{moved if event.kind in ('slip', 'roll') else ''}"
 
 
 def _facts(readings: Sequence[Reading], watch: ArrayWatch, facts: dict[str, Any]) -> dict[str, Any]:
@@ -167,10 +171,11 @@ def _facts(readings: Sequence[Reading], watch: ArrayWatch, facts: dict[str, Any]
     notes = [*facts["notes"], *watch.notes]
     for state, words in (
         ("past", "lie farther beyond the first or last ring than can be told"),
-        ("wide", "are explained by no point, no line and no few points: a wide contact"),
+        ("wide", "are explained by no point, line or round patch and no few points: a wide contact"),
+        ("pulled", "read less than at rest: the array was touched in the first second, or its voltage falls when it is pressed"),
     ):
         if states[state]:
-            notes.append(f"{states[state]} of {len(readings)} frames {words}; their places are not to be trusted")
+            notes.append(f"{states[state]} of {len(readings)} frames {words}; their places are not to be trusted and make no events")
     if full := sum(reading.saturated > 0 for reading in readings):
         notes.append(f"in {full} frames tactels are at the end of their range; they were left out")
     return {
@@ -180,7 +185,7 @@ def _facts(readings: Sequence[Reading], watch: ArrayWatch, facts: dict[str, Any]
         "noise": watch.noise,
         "states": dict(states),
         "events": [asdict(event) for event in events],
-        "largest_force_n": max((reading.place.force_n for reading in readings), default=0.0),
+        "largest_force_n": max((reading.place.force_n for reading in readings if reading.contacts), default=0.0),
         "notes": notes,
     }
 
@@ -213,11 +218,17 @@ def _row(reading: Reading, simulated: bool) -> list[str]:
     if line is not None:
         sure = str(int(reading.state == "line" and line.orientation.sure))
         direction = [number(math.degrees(line.line_rad)), number(math.degrees(line.line_sd_rad)), sure]
+    turned = ["", "", ""]
+    if (spot := reading.spot) is not None:
+        # A disc that was fitted without any pull along the skin says nothing of it.
+        tilt = spot.tilt_rad if spot.along_n or spot.around_n else (math.nan, math.nan)
+        turned = [number(spot.radius_mm), *(number(math.degrees(angle)) for angle in tilt)]
     return [
         f"{reading.time:.6f}",
         reading.state,
         *(number(value) for value in (place.axial_mm, math.degrees(place.angle_rad), place.force_n)),
         *direction,
+        *turned,
         " ".join(f"{each.axial_mm:.3f}/{math.degrees(each.angle_rad):.2f}/{each.force_n:.3f}" for each in points),
         number(peak.axial_mm),
         number(math.degrees(peak.angle_rad)),

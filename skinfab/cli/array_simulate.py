@@ -15,7 +15,7 @@ from skinfab.cli import steps
 if TYPE_CHECKING:
     from skinfab.fingertip.array.tracking import Event
 
-EVENTS = ["kind", "start_s", "end_s", "along_mm", "around_mm"]
+EVENTS = ["kind", "start_s", "end_s", "along_mm", "around_mm", "contact"]
 
 
 def add_options(p: argparse.ArgumentParser) -> None:
@@ -63,5 +63,5 @@ def events_csv(events: Sequence[Event], *, simulated: bool) -> str:
     rows.writerow([*EVENTS, "simulated"])
     for event in events:
         numbers = (f"{value:.3f}" for value in (event.start, event.end, event.along_mm, event.around_mm))
-        rows.writerow([event.kind, *numbers, int(simulated)])
+        rows.writerow([event.kind, *numbers, event.number, int(simulated)])
     return text.getvalue()

@@ -21,7 +21,15 @@ if TYPE_CHECKING:
 
 _DPI = 150
 #: Told apart without red and green, and in print.
-_STATES = {"point": "#000000", "line": "#0072B2", "several": "#E69F00", "wide": "#CC79A7", "edge": "#56B4E9", "past": "#D55E00"}
+_STATES = {
+    "point": "#000000",
+    "line": "#0072B2",
+    "patch": "#009E73",
+    "several": "#E69F00",
+    "wide": "#CC79A7",
+    "edge": "#56B4E9",
+    "past": "#D55E00",
+}
 _EVENTS = {"touch": "#009E73", "lift": "#777777", "slip": "#D55E00", "roll": "#0072B2"}
 #: Frames whose contours are drawn, and at which parts of a peak.
 _CONTOURS, _PARTS = 6, (0.25, 0.5, 0.75, 0.95)
@@ -42,25 +50,38 @@ def draw_run(readings: Sequence[Reading], model: ArrayModel, path: Path, *, titl
     figure = _figure((11.4, 8.2))
     figure.suptitle(f"{title}{' (simulated)' if simulated else ''}: centre of pressure, directions, events, contours", fontsize=10)
     upper, lower = figure.subfigures(2, 1, squeeze=False, height_ratios=(1.7, 1)).ravel()
-    skin, times = upper.subplots(1, 2, width_ratios=(1, 1.6))
+    left, right = upper.subfigures(1, 2, width_ratios=(1, 1.6))
+    skin, times = left.subplots(), right.subplots(3, 1, sharex=True)
     _draw_contours(lower, [reading for reading in readings if reading.place.force_n > 0], model)
     touched = [reading for reading in readings if math.isfinite(reading.place.axial_mm)]
     _draw_skin(skin, touched, model)
-    time = [reading.time for reading in readings]
-    for values, colour, label in (
-        ([reading.place.axial_mm for reading in readings], "#000000", "place along, mm"),
-        ([math.degrees(reading.place.angle_rad) / 10 for reading in readings], "#0072B2", "angle around, tens of degrees"),
-        ([reading.place.force_n * 10 if reading.place.force_n else math.nan for reading in readings], "#E69F00", "force, tenths of N"),
-    ):
-        times.plot(time, values, ".-", ms=3, lw=0.7, color=colour, label=label)
-    for event in (event for reading in readings for event in reading.events):
-        times.axvspan(event.start, max(event.end, event.start + 0.01 * (time[-1] - time[0])), color=_EVENTS[event.kind], alpha=0.25, lw=0)
-    for kind, colour in _EVENTS.items():
-        times.fill_between([], [], [], color=colour, alpha=0.25, lw=0, label=kind)
-    times.set(xlabel="time, s")
-    times.grid(True, lw=0.3, alpha=0.6)
-    times.legend(fontsize=7, ncols=2)
+    _draw_times(times, readings)
     _save(figure, path)
+
+
+def _draw_times(panels: Sequence[Axes], readings: Sequence[Reading]) -> None:
+    """Place along, angle and force of every contact over time, and the events."""
+    span = readings[-1].time - readings[0].time
+    for axes, label, value in zip(
+        panels,
+        ("along, mm", "around, degrees", "force, N"),
+        (lambda one: one.axial_mm, lambda one: math.degrees(one.angle_rad), lambda one: one.force_n),
+        strict=True,
+    ):
+        for state, colour in _STATES.items():
+            of = [
+                (reading.time, value(one)) for reading in readings if reading.state == state for one in reading.contacts or (reading.place,)
+            ]
+            axes.plot([t for t, _ in of], [v for _, v in of], ".", ms=3, color=colour)
+        for event in (event for reading in readings for event in reading.events):
+            axes.axvspan(event.start, max(event.end, event.start + 0.01 * span), color=_EVENTS[event.kind], alpha=0.25, lw=0)
+        axes.set_ylabel(label, fontsize=8)
+        axes.tick_params(labelsize=7)
+        axes.grid(True, lw=0.3, alpha=0.6)
+    for kind, colour in _EVENTS.items():
+        panels[0].fill_between([], [], [], color=colour, alpha=0.25, lw=0, label=kind)
+    panels[0].legend(fontsize=7, ncols=4, loc="lower right", bbox_to_anchor=(1, 1))
+    panels[2].set_xlabel("time, s", fontsize=8)
 
 
 def _draw_skin(axes: Axes, touched: Sequence[Reading], model: ArrayModel) -> None:
@@ -70,9 +91,9 @@ def _draw_skin(axes: Axes, touched: Sequence[Reading], model: ArrayModel) -> Non
     axes.plot(angles, i.ravel() * g.ring_pitch, "s", ms=3, mfc="none", color="#bbbbbb", label="tactels")
     for state, colour in _STATES.items():
         of = [reading for reading in touched if reading.state == state]
-        x, y = [math.degrees(reading.place.angle_rad) for reading in of], [reading.place.axial_mm for reading in of]
+        each = [one for reading in of for one in reading.contacts or (reading.place,)]
         if of:
-            axes.plot(x, y, ".", ms=5, color=colour, label=state)
+            axes.plot([math.degrees(one.angle_rad) for one in each], [one.axial_mm for one in each], ".", ms=5, color=colour, label=state)
         for reading in of:
             if state == "line" and reading.line is not None and reading.line.orientation.sure:
                 half, a = reading.line.length_mm / 2, reading.line.line_rad
@@ -99,10 +120,11 @@ def _draw_contours(figure: SubFigure, touched: Sequence[Reading], model: ArrayMo
         for peak in PeakFinder(g).all(reading.Z):
             for part in _PARTS:
                 points, _ = contour(C, sinc.kind, g, peak, part=part)
-                axes.plot(np.degrees(points[:, 1]), points[:, 0], "-", lw=0.8, color="#0072B2")
-        centre = math.degrees(reading.place.angle_rad)
-        axes.plot(centre, reading.place.axial_mm, "+", color="#D55E00")
-        axes.set(xlim=(centre - 90, centre + 90), ylim=(0, (g.rings - 1) * g.ring_pitch), title=f"{reading.time:.2f} s")
+                for turn in (-360, 0, 360):  # whatever lies beyond the seam goes on at the other side
+                    axes.plot(np.degrees(points[:, 1]) + turn, points[:, 0], "-", lw=0.8, color="#0072B2")
+        for one in reading.contacts or (reading.place,):
+            axes.plot(math.degrees(one.angle_rad), one.axial_mm, "+", color="#D55E00")
+        axes.set(xlim=(-180, 180), xticks=(-180, -90, 0, 90, 180), ylim=(0, (g.rings - 1) * g.ring_pitch), title=f"{reading.time:.2f} s")
         axes.title.set_fontsize(8)
         axes.tick_params(labelsize=7)
     figure.supxlabel(f"degrees; contours at {', '.join(f'{100 * part:.0f}' for part in _PARTS)} % of each peak of the sinc", fontsize=8)
@@ -119,6 +141,9 @@ def draw_training(model: ArrayModel, errors: Sequence[Error], path: Path, *, sim
                 span = [[max(each.rms - each.low, 0)], [max(each.high - each.rms, 0)]]
                 axes.bar(k, each.rms, color=_WAYS[way], width=0.7)
                 axes.errorbar(k, each.rms, yerr=span, color="#555555", capsize=3)
+        if quantity == "force":
+            axes.text(0, 0, "the published\nway tells\nno force", ha="center", va="bottom", fontsize=7)
+        axes.set_xlim(-0.6, len(WAYS) - 0.4)
         axes.set_xticks(range(len(WAYS)), WAYS, fontsize=8)
         axes.set_title(f"{quantity}: rms, {unit}", fontsize=9)
     shown = gains.imshow(model.gains, cmap="viridis", origin="lower")

@@ -2,14 +2,15 @@
 
 The pressure falls as a parabola to zero at the ends of the line. Its length is found with the rest, as no law of contact is known well
 enough; but it is no shorter than the width that the seed's equation 11 gives for the found force, because a line that is nearly a
-point may lie any way. A direction is not sure where its standard deviation is large, or where another one, or a point,
-explains the frame as well.
+point may lie any way. A direction is not sure where its standard deviation is large, or where another one, or a contact without any
+(`skinfab.fingertip.array.spot_fit`), explains the frame as well.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numba
 import numpy as np
@@ -17,12 +18,13 @@ from numpy.typing import NDArray
 
 from skinfab.fingertip.array.interpolate import SINC
 from skinfab.fingertip.array.least_squares import normal_equations, solve
-from skinfab.fingertip.array.matched import ArrayModel, fit_forces, skin_of
+from skinfab.fingertip.array.matched import ArrayModel, Matcher, skin_of
 from skinfab.fingertip.array.orientation import Orientation, folded
 from skinfab.fingertip.array.peak import find, highest, without_nan
 from skinfab.fingertip.array.response import add_force, normal_window
 from skinfab.fingertip.array.simulator import LONGEST_MM, STRETCH, contact_line, line_nodes
-from skinfab.tolerances import LINE_RIVAL, LINE_STEP_RAD, LINE_UNSURE_RAD, MATCH_MM, NEWTON_TACTELS, PEAK_FLAT
+from skinfab.fingertip.array.spot_fit import Spot, SpotFinder
+from skinfab.tolerances import LINE_BETTER, LINE_RIVAL, LINE_STEP_RAD, LINE_UNSURE_RAD, NEWTON_TACTELS, PEAK_FLAT
 
 FloatArray = NDArray[np.float64]
 
@@ -50,7 +52,7 @@ class Line:
         Standard deviation of the direction, from what is left unexplained.
     unexplained : float
     ambiguous : bool
-        Another direction, or no length at all, explains the frame as well.
+        Another direction, or a contact without any, explains the frame as well.
     """
 
     axial_mm: float
@@ -215,13 +217,17 @@ class LineFinder:
 
     def __init__(self, model: ArrayModel, *, floor: float = 0.0, noise: float = 0.0) -> None:
         self.model, self._floor, self._noise = model, floor, noise
+        self._matcher, self._spots = Matcher(model), SpotFinder(model)
         g = model.geometry
         self._nodes = np.array(line_nodes(2.0, _NODES))
         self._shrink = g.core_radius / g.finger_radius
         self._skin = skin_of(model)
 
-    def __call__(self, Z: FloatArray) -> Line | None:
-        """The line of a frame's deflections (rings, stripes); None where nothing touches it."""
+    def __call__(self, Z: FloatArray, rivals: Sequence[Spot] = ()) -> Line | None:
+        """The line of a frame's deflections (rings, stripes), and the contacts without a direction that explain it as well, where known.
+
+        None where nothing touches it.
+        """
         top = highest(Z)
         if not top > self._floor:
             return None
@@ -231,7 +237,7 @@ class LineFinder:
         (p, cost, variance, used), ambiguous = self._best(Z, x * g.ring_pitch, y * g.stripe_pitch, top)
         # Where there is next to nothing left, the noise that is known of still moves the line.
         floor = self._noise**2 * (used - 5)
-        return Line(
+        line = Line(
             float(p[0]),
             math.remainder(float(p[1]) / g.core_radius, math.tau),
             folded(float(p[2])),
@@ -239,18 +245,20 @@ class LineFinder:
             float(p[4]) * m.rubber.young,
             math.sqrt(max(variance, 0.0) * (max(cost, floor) / cost if cost > 0 else 1.0)),
             cost / max(float((known * known).sum()), 1e-300),
-            ambiguous or self._like_a_point(Z, p, max(cost / max(used - 5, 1), self._noise**2)),
+            ambiguous,
         )
+        return line if ambiguous else replace(line, ambiguous=not all(self.better(Z, line, spot) for spot in rivals or self.rivals(Z)))
 
-    def _like_a_point(self, Z: FloatArray, p: FloatArray, variance: float) -> bool:
-        """Whether one force leaves no more of the frame than the line does, but for noise."""
-        m = self.model
-        at, *_ = fit_forces(Z, m.gains, np.array([[p[0], p[1], p[4]]]), self._skin, MATCH_MM)
-        core, young = m.geometry.core_radius, m.rubber.young
-        point = Line(at[0, 0], at[0, 1] / core, 0.0, 0.0, at[0, 2] * young, 0.0, 0.0, True)
-        line = Line(p[0], p[1] / core, p[2], 2 * p[3], p[4] * young, 0.0, 0.0, False)
-        of_point, of_line = (float(np.nansum((Z - self.predicted(each)) ** 2)) for each in (point, line))
-        return of_point - of_line < LINE_RIVAL * variance
+    def rivals(self, Z: FloatArray) -> tuple[Spot, Spot]:
+        """The force on a point, not only normal, and the patch that are most like a frame; the frame must hold a finite reading."""
+        x, s, force, *_ = self._matcher.one(Z)
+        start = (x, s / self.model.geometry.core_radius, force)
+        return self._spots.push(Z, start), self._spots.patch(Z, start)
+
+    def better(self, Z: FloatArray, line: Line, spot: Spot) -> bool:
+        """Whether a line leaves less of a frame than a spot does by more than noise and gains may."""
+        of_line, of_spot = (float(np.nansum((Z - made) ** 2)) for made in (self.predicted(line), self._spots.predicted(spot)))
+        return of_spot - of_line > max(LINE_RIVAL * self._noise**2, LINE_BETTER * of_line)
 
     def predicted(self, line: Line) -> FloatArray:
         """The deflections of a line by the model, (rings, stripes)."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 
 from skinfab.errors import InputError
 from skinfab.fingertip.array.geometry import tactel_columns
+from skinfab.fingertip.array.rest import stuck_at_rest
 from skinfab.fingertip.array.simulator import deflection
 from skinfab.readout.frame import Recording
 
@@ -22,6 +24,9 @@ TRUTH: tuple[str, ...] = ("axial_mm", "angle_deg", "force_n", "line_deg")
 REST_S, REST_FRAMES = 1.0, 3
 #: A log whose tactels scatter by more than this in that time was touched then, as a part of the gap.
 RESTLESS = 5e-3
+#: A frame is pulled where its lowest reading is below rest by more than this part of its highest: beside a contact that also pulls along
+#: the skin it is a third. In a log it is also so many standard deviations, this part of the log's highest, and so many frames.
+PULLED_PART, PULLED_SIGMAS, PULLED_LOG, PULLED_FRAMES = 0.5, 10.0, 0.1, 3
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,6 +98,11 @@ def read_array_log(path: str | Path) -> ArrayLog:
 def of_recording(recording: Recording, *, name: str, sha256: str = "", notes: tuple[str, ...] = ()) -> ArrayLog:
     """A recording's voltages as deflections: V0 is the median of its first second.
 
+    Raises
+    ------
+    InputError
+        It has no array's channels, no tactel reads, or it was touched in its first second.
+
     Examples
     --------
     >>> from skinfab.fingertip.array.protocols import presses
@@ -109,9 +119,15 @@ def of_recording(recording: Recording, *, name: str, sha256: str = "", notes: tu
     flat = columns.ravel()
     valid, saturated = recording.valid[:, flat], recording.saturated[:, flat]
     volts = np.where(valid & ~saturated, recording.values[:, flat], np.nan).reshape(len(time), *shape)
-    dead = ~np.isfinite(volts[:rest]).any(axis=0)
-    first = np.where(dead, 1.0, volts[:rest])  # a tactel that never reads has no rest; it stays NaN
-    rest_v = np.nanmedian(first, axis=0)
+    # A broken wire reads nothing, or 0 V. A tactel that never reads has no rest; it stays NaN.
+    lost = ~np.isfinite(np.where(volts[:rest] > 0, volts[:rest], np.nan)).any(axis=0)
+    rest_v = np.nanmedian(np.where(lost, 1.0, volts[:rest]), axis=0)
+    lost |= ~(rest_v > 0)
+    stuck = stuck_at_rest(volts[:rest]) & ~lost
+    dead = lost | stuck
+    if dead.all():
+        raise InputError(f"{name}: no tactel reads a voltage above zero in the first {REST_S:g} s; look at its wires")
+    rest_v = np.where(dead, 1.0, rest_v)
     Z = np.where(dead, np.nan, deflection(volts, rest_v))
     scatter = np.nanstd(np.where(dead, 0.0, Z[:rest]), axis=0)
     if float(scatter.max()) > RESTLESS:
@@ -121,11 +137,16 @@ def of_recording(recording: Recording, *, name: str, sha256: str = "", notes: tu
             "untouched when a log begins"
         )
     said = list(notes)
-    if dead.any():
-        which = ", ".join(f"r{i}s{j}" for i, j in np.argwhere(dead)[:4])
-        said.append(f"{name}: {int(dead.sum())} tactels read nothing at rest and are left out: {which}; look at their wires")
+    for which, how in ((lost, "read nothing, or 0 V,"), (stuck, "stand still while the others change")):
+        if which.any():
+            said.append(
+                f"{name}: {int(which.sum())} of {which.size} tactels {how} at rest and are left out: {tactels(which)}; look at their wires"
+            )
     alive = scatter[~dead]
     noise = math.sqrt(float((alive**2).mean()) * rest / max(rest - 1, 1)) if alive.size else 0.0
+    low, high = -np.nanmin(Z, axis=(1, 2), initial=0.0), np.nanmax(Z, axis=(1, 2), initial=0.0)
+    deep = np.maximum(PULLED_PART * high, max(PULLED_SIGMAS * noise, PULLED_LOG * float(high.max())))
+    require_rested(Z[low > deep], name)
     truth: dict[str, FloatArray] = {
         each: np.where(recording.valid[:, recording.stream.index(each)], recording.values[:, recording.stream.index(each)], np.nan)
         for each in TRUTH
@@ -142,4 +163,33 @@ def of_recording(recording: Recording, *, name: str, sha256: str = "", notes: tu
         recording.stream.simulated,
         sha256,
         tuple(said),
+    )
+
+
+def tactels(which: NDArray[np.bool_]) -> str:
+    """The first few of some tactels by name.
+
+    Examples
+    --------
+    >>> tactels(np.array([[True, False], [False, True]]))
+    'r0s0, r1s1'
+    """
+    return ", ".join(f"r{i}s{j}" for i, j in np.argwhere(which)[:4])
+
+
+def require_rested(pulled: Sequence[FloatArray] | FloatArray, name: str) -> None:
+    """Refuse a log with frames, (n, rings, stripes), that read far less than at rest.
+
+    Raises
+    ------
+    InputError
+        There are several of them.
+    """
+    if len(pulled) < PULLED_FRAMES:
+        return
+    deepest = np.nanmin(np.array(pulled), axis=0, initial=0.0)
+    which = deepest == deepest.min()
+    raise InputError(
+        f"{name}: in {len(pulled)} frames tactels read less than at rest, {tactels(which)} by {-100 * deepest.min():.2g} % of its gap; the "
+        "array was touched in the first second, or its voltage falls when it is pressed (turn the polarity), or a wire broke"
     )

@@ -246,6 +246,12 @@ class Matcher:
         """What a tactel reads of a force on its middle."""
         return force_n * self._per_force / self.model.rubber.young
 
+    def end(self, axial_mm: float) -> str:
+        """``point``, ``edge`` beyond the first or last ring's middle, or ``past`` farther out than can be told."""
+        g = self.model.geometry
+        out = max(-axial_mm, axial_mm - (g.rings - 1) * g.ring_pitch) / g.ring_pitch
+        return "past" if out > _BEYOND else "edge" if out > 0 else "point"
+
     def one(self, Z: FloatArray) -> tuple[float, float, float, float, int, int]:
         """The one force that explains most, as bare numbers: mm, mm around the core, N, unexplained, steps, tactels compared.
 
@@ -265,16 +271,14 @@ class Matcher:
         top = highest(Z)
         if not top > self._floor:
             return Match((), 0.0, "none", 0)
-        g = self.model.geometry
         x, s, force, unexplained, steps, used = self.one(Z)
         allowed = MATCH_UNEXPLAINED + 3 * used * self._noise**2 / max(top, 1e-300) ** 2
-        end = (g.rings - 1) * g.ring_pitch
-        out = max(-x, x - end) / g.ring_pitch
+        end = self.end(x)
         single = self._contact(x, s, force)
-        if out > _BEYOND:
-            return Match((single,), unexplained, "past", steps)
+        if end == "past":
+            return Match((single,), unexplained, end, steps)
         if unexplained <= allowed:
-            return Match((single,), unexplained, "edge" if out > 0 else "one", steps)
+            return Match((single,), unexplained, "one" if end == "point" else end, steps)
         two, left = self._two(Z, x, s, force)
         if left <= max(allowed, MATCH_APART * unexplained) and left < unexplained:
             pair = sorted((self._contact(*row) for row in two), key=lambda c: -c.force_n)

@@ -1,6 +1,7 @@
 """What moves on the finger: touch, lift-off, rolling and slipping, from where it is touched in frame after frame.
 
-As in the seed's log of a bar that is twirled: a contact that moves far in very short time has slipped, one that moves on slowly rolls.
+As in the seed's log of a bar that is twirled: a contact that moves far in very short time has slipped, one that moves on slowly rolls
+(`skinfab.fingertip.array.motion`). Each of several contacts is followed by itself.
 """
 
 from __future__ import annotations
@@ -8,25 +9,22 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from skinfab.fingertip.array.geometry import Geometry
+from skinfab.fingertip.array.motion import SLIP_S, At, Motion, Moved
 
 FloatArray = NDArray[np.float64]
 
 KINDS = ("touch", "lift", "slip", "roll")
 #: A force that begins a contact, N, and the part of it that ends it.
 TOUCH_N, LIFT_PART = 0.1, 0.5
-#: A contact slips where it moves by so much, mm, in so short a time, s: 20 mm/s, where a bar that rolls through 90 degrees in ten of the
-#: seed's frames goes at 12.
-SLIP_MM, SLIP_S = 4.0, 0.2
-#: It rolls where it moves on by so much, mm; and stands where it does not for so long, s.
-ROLL_MM, STAND_S = 2.0, 0.7
-#: A slip is over where it is slower than this part of what began it; times of frames are rounded by no more than this, s.
-_SLOW, _ROUNDING_S = 0.5, 1e-6
+#: Another number of contacts than before is told once it has lasted so long, s.
+SURE_S = 0.2
+#: Times of frames are rounded by no more than this, s.
+_ROUNDING_S = 1e-6
 
 
 @dataclass(frozen=True)
@@ -57,9 +55,11 @@ class Event:
     kind : str
         Of `KINDS`.
     start, end : float, s
-        The same for a touch and a lift; of a slip the frames before and after.
+        The same for a touch and a lift; else the last frame before it moved and the first after.
     along_mm, around_mm : float
         By how much it moved on the skin's outside; 0 for a touch and a lift.
+    number : int
+        Of the contact, counted from 1 as they touch.
     """
 
     kind: str
@@ -67,15 +67,7 @@ class Event:
     end: float
     along_mm: float = 0.0
     around_mm: float = 0.0
-
-
-class _Roll(NamedTuple):
-    """A roll so far: since when, how far on the outside, mm, and where it has come to."""
-
-    start: float
-    along_mm: float
-    around_mm: float
-    at: Place
+    number: int = 1
 
 
 def centre_of_pressure(Z: FloatArray, geometry: Geometry) -> tuple[float, float]:
@@ -98,8 +90,44 @@ def centre_of_pressure(Z: FloatArray, geometry: Geometry) -> tuple[float, float]
     return geometry.from_tactels(i + x, j + y)
 
 
+class _Followed:
+    """One contact: its number, and where it is."""
+
+    def __init__(self, number: int, place: Place, radius_mm: float) -> None:
+        self.number, self.last, self._radius = number, place, radius_mm
+        self._at = At(place.time, place.axial_mm, radius_mm * place.angle_rad)
+        self._motion = Motion(self._at)
+
+    def _turn(self, place: Place) -> float:
+        return self._radius * math.remainder(place.angle_rad - self.last.angle_rad, math.tau)
+
+    def far(self, place: Place) -> float:
+        """How far from it a place is, mm."""
+        return math.hypot(place.axial_mm - self.last.axial_mm, self._turn(place))
+
+    def step(self, place: Place, *, anew: bool) -> list[Event]:
+        """Take the next place; `anew`: how it came there was not seen."""
+        self._at = At(place.time, place.axial_mm, self._at.around + self._turn(place))
+        self.last = place
+        if anew:
+            events = self.end()
+            self._motion = Motion(self._at)
+            return events
+        return self._events(self._motion.step(self._at))
+
+    def end(self) -> list[Event]:
+        """What goes on still, ended."""
+        return self._events(self._motion.end())
+
+    def _events(self, moved: Sequence[Moved]) -> list[Event]:
+        return [Event(each.kind, each.start, each.end, each.along_mm, each.around_mm, self.number) for each in moved]
+
+
 class Tracker:
-    """Follows the place of contact and says what happens.
+    """Follows the places of all contacts and says what happens.
+
+    From frame to frame a contact is the one that lies nearest. That there is one more, or one less but still another, is told once it has
+    been so for `SURE_S`: a contact that is taken for two in a single frame is no event. While their number changes nothing slips or rolls.
 
     Parameters
     ----------
@@ -119,103 +147,71 @@ class Tracker:
         self._begin()
 
     def _begin(self) -> None:
-        self._touched = False
-        self._recent: list[Place] = []
-        #: Where a slip began; where the contact stood, the last frame in which it still did, and where it has come to in rolling.
-        self._slip: Place | None = None
-        self._stood: Place | None = None
-        self._still: Place | None = None
-        self._roll: _Roll | None = None
+        self._each: list[_Followed] = []
+        self._number = 0
+        #: The last frame that was sure, whether any was passed over since, and since when how many there are that are not followed yet.
+        self._known, self._passed = -math.inf, False
+        self._other: tuple[float, int] | None = None
+
+    @property
+    def touched(self) -> bool:
+        """Whether anything is followed."""
+        return bool(self._each)
 
     def follow(self, places: Iterable[Place]) -> tuple[Event, ...]:
-        """All events of a sequence of frames, from the start."""
+        """All events of one contact's frames, from the start; frames of which the place is not known are passed over."""
         self._begin()
-        events = [event for place in places for event in self.step(place)]
+        events: list[Event] = []
+        for place in places:
+            known = math.isfinite(place.axial_mm) and math.isfinite(place.angle_rad) and math.isfinite(place.force_n)
+            events += self.step(place.time, [place] if known else [], sure=known or place.force_n == 0)
         return (*events, *self.finish())
 
     def finish(self) -> tuple[Event, ...]:
         """What goes on still, ended."""
-        events = self._end()
+        events = tuple(event for each in self._each for event in each.end())
         self._begin()
-        return tuple(events)
+        return events
 
-    def step(self, place: Place) -> list[Event]:
-        """Take the next frame; events that are over with it."""
-        known = math.isfinite(place.axial_mm) and math.isfinite(place.angle_rad)
-        if not self._touched:
-            if not (place.force_n >= TOUCH_N and known):
-                return []
-            self._touched = True
-            self._stand(place)
-            return [Event("touch", place.time, place.time)]
-        if place.force_n < LIFT_PART * TOUCH_N:
-            events = [*self._end(), Event("lift", place.time, place.time)]
-            self._begin()
-            return events
-        return self._move(place) if known else []
-
-    def _stand(self, place: Place) -> None:
-        """From here on it has neither slipped nor rolled."""
-        self._recent, self._stood, self._still, self._roll, self._slip = [place], place, place, None, None
-
-    def _move(self, place: Place) -> list[Event]:
-        last = self._recent[-1]
-        before = [each for each in self._recent if place.time - each.time <= SLIP_S + _ROUNDING_S] or [last]
-        self._recent = [*before, place]
-        if self._slip is not None:
-            if self._far(last, place) > _SLOW * SLIP_MM / SLIP_S * (place.time - last.time):
-                return []
-            events = self._end(last)
-            self._stand(last)
-            self._recent = [last, place]
-            return events
-        far = max(before, key=lambda each: self._far(each, place))
-        if self._far(far, place) >= SLIP_MM:
-            # What stood there until a moment ago slips from that moment on, and did not roll before.
-            self._slip = next(each for each in reversed(before) if self._far(far, each) < SLIP_MM / 4)
-            if self._roll is not None and self._roll.start >= self._slip.time - SLIP_S:
-                self._roll = None
-            return self._end_roll()
-        return self._turn(place)
-
-    def _turn(self, place: Place) -> list[Event]:
-        """Rolling: on from where it stood, by a step of `ROLL_MM` after the other."""
-        assert self._stood is not None and self._still is not None
-        at = self._stood if self._roll is None else self._roll.at
-        if self._far(at, place) >= ROLL_MM:
-            start, along, around = (self._still.time, 0.0, 0.0) if self._roll is None else self._roll[:3]
-            moved = self._between(at, place)
-            self._roll = _Roll(start, along + moved[0], around + moved[1], place)
-        elif self._roll is None:
-            if self._far(at, place) < ROLL_MM / 2:
-                self._still = place
-        elif place.time - self._roll.at.time > STAND_S:
-            events = self._end_roll()
-            self._stood = self._still = place
-            return events
-        return []
-
-    def _end(self, last: Place | None = None) -> list[Event]:
-        """A slip or a roll that is over, the slip with the last frame of its motion."""
-        if self._slip is not None:
-            end = last or self._recent[-1]
-            event = Event("slip", self._slip.time, end.time, *self._between(self._slip, end))
-            self._slip = None
-            return [event]
-        return self._end_roll()
-
-    def _end_roll(self) -> list[Event]:
-        if self._roll is None:
+    def step(self, time: float, places: Sequence[Place], *, sure: bool = True) -> list[Event]:
+        """Take the next frame's contacts; events that are over with it. A frame that is not `sure` makes none."""
+        if not sure:
+            self._passed = True
             return []
-        start, along, around, at = self._roll
-        self._roll = None
-        return [Event("roll", start, at.time, along, around)]
+        strong = [place for place in places if place.force_n >= TOUCH_N]
+        weak = [place for place in places if LIFT_PART * TOUCH_N <= place.force_n < TOUCH_N]
+        felt = strong + weak[: max(len(self._each) - len(strong), 0)]
+        since = time
+        if felt and self._each and len(felt) != len(self._each):
+            if self._other is None or self._other[1] != len(felt):
+                self._other = time, len(felt)
+            since = self._other[0]
+            if time - since < SURE_S - _ROUNDING_S:
+                self._passed = True
+                return []
+        changed = len(felt) != len(self._each)
+        anew = changed or (self._passed and time - self._known > SLIP_S + _ROUNDING_S)
+        self._known, self._passed, self._other = time, False, None
+        return self._take(felt, since, anew=anew)
 
-    def _between(self, a: Place, b: Place) -> tuple[float, float]:
-        return b.axial_mm - a.axial_mm, self._radius * math.remainder(b.angle_rad - a.angle_rad, math.tau)
-
-    def _far(self, a: Place, b: Place) -> float:
-        return math.hypot(*self._between(a, b))
+    def _take(self, felt: Sequence[Place], since: float, *, anew: bool) -> list[Event]:
+        """Go on with the places that are nearest to what is followed; begin and end the others."""
+        left, free, events = list(self._each), list(felt), []
+        followed = []
+        while left and free:
+            each, place = min(((one, two) for one in left for two in free), key=lambda pair: pair[0].far(pair[1]))
+            left.remove(each)
+            free.remove(place)
+            events += each.step(place, anew=anew)
+            followed.append(each)
+        for each in left:
+            events += [*each.end(), Event("lift", since, since, number=each.number)]
+        for place in free:
+            self._number += 1
+            followed.append(_Followed(self._number, place, self._radius))
+            events.append(Event("touch", since, since, number=self._number))
+        self._each = followed
+        return events
 
 
 def matched_events(truth: Sequence[Event], found: Sequence[Event], *, slack: float) -> list[tuple[int, int]]:

@@ -44,7 +44,10 @@ def test_half_of_the_published_error_on_the_same_array() -> None:
     assert 15 < worst(span[at_50]) < 27 and worst(span) < 35
     found = [one.judged(ways["matched"]) for one in rods]
     errors, sure = np.concatenate([e for e, _ in found]), np.concatenate([s for _, s in found])
-    assert sure.mean() > 0.9 and worst(errors[sure]) < 10 and worst(errors[at_50]) < 5 and rms(errors) < 0.25 * rms(span)
+    assert worst(errors[sure]) < 10 and worst(errors[at_50]) < 5 and rms(errors) < 0.25 * rms(span)
+    # Nearly all are sure but those that lie across: between two stripes a round patch reads much like them.
+    turned = np.concatenate([one.line_deg for one in rods]) > 20
+    assert sure.mean() > 0.85 and sure[turned].mean() > 0.95
 
 
 def test_three_fingers_are_better_than_one() -> None:

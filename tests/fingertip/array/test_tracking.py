@@ -33,8 +33,8 @@ def test_slow_is_rolling_and_fast_is_slipping_at_any_rate(rate: float) -> None:
 def test_how_far_it_rolled() -> None:
     events = Tracker(12.7).follow([Place(k / 6, 10.0, 0.1 * min(max(k - 3, 0), 8), 1.0) for k in range(30)])
     roll = events[-1]
-    assert roll.kind == "roll" and roll.around_mm == pytest.approx(0.8 * 12.7, abs=2) and roll.along_mm == 0
-    assert roll.start == pytest.approx(0.5, abs=0.4) and roll.end == pytest.approx(11 / 6, abs=0.4)
+    assert roll.kind == "roll" and roll.around_mm == pytest.approx(0.8 * 12.7, abs=0.01) and roll.along_mm == 0
+    assert roll.start == pytest.approx(0.5) and roll.end == pytest.approx(11 / 6)
 
 
 def test_round_the_back_of_the_finger_is_no_slip() -> None:
