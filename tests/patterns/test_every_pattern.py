@@ -1,4 +1,4 @@
-"""What holds for every pattern there is, a new one included: each test runs over hundreds of random sets of parameters."""
+"""What holds for every pattern there is, a new one included: each test runs over a hundred random sets and more of parameters."""
 
 import dataclasses
 import math
@@ -21,8 +21,8 @@ from skinfab.placement.sensor import Sensor
 from skinfab.tolerances import CLEARANCE_MM, PARAMETER_STEP_MM
 
 every_pattern = pytest.mark.parametrize("kind", PATTERNS)
-hundreds = settings(max_examples=120, deadline=None, suppress_health_check=[HealthCheck.too_slow])
-thousands = settings(max_examples=300, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+some = settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+many = settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 
 #: Parts that each arc is sampled in; a line has its ends.
 PARTS = 256
@@ -41,7 +41,7 @@ def numeric_length(segment: Line | Arc) -> float:
 
 
 @every_pattern
-@thousands
+@many
 @given(data=st.data())
 def test_length_is_what_sampling_measures(kind: str, data: st.DataObject) -> None:
     pattern = data.draw(patterns(kind))
@@ -49,7 +49,7 @@ def test_length_is_what_sampling_measures(kind: str, data: st.DataObject) -> Non
 
 
 @every_pattern
-@thousands
+@many
 @given(data=st.data(), angle=st.floats(-7, 7))
 def test_the_box_is_exact_at_any_angle(kind: str, data: st.DataObject, angle: float) -> None:
     path = data.draw(patterns(kind)).printed_path().transformed(angle=angle, shift=(0.0, 0.0))
@@ -63,7 +63,7 @@ def test_the_box_is_exact_at_any_angle(kind: str, data: st.DataObject, angle: fl
 
 
 @every_pattern
-@thousands
+@many
 @given(data=st.data())
 def test_pads_are_squares_of_ink_at_the_terminals(kind: str, data: st.DataObject) -> None:
     pattern = data.draw(patterns(kind))
@@ -90,7 +90,7 @@ EXTREMES = st.sampled_from([-1e300, -7, -1e-9, 0, 1e-300, 1e-9, 0.05, 999.999, 1
 
 
 @every_pattern
-@thousands
+@many
 @given(data=st.data())
 def test_any_numbers_are_drawn_or_refused_by_name(kind: str, data: st.DataObject) -> None:
     params = data.draw(parameter_sets(kind))
@@ -120,7 +120,7 @@ def failure(kind: str, params: dict[str, Any]) -> InputError | None:
 
 
 @every_pattern
-@thousands
+@many
 @given(data=st.data())
 def test_advice_works_and_is_the_nearest(kind: str, data: st.DataObject) -> None:
     params = data.draw(parameter_sets(kind))
@@ -143,7 +143,7 @@ def test_advice_works_and_is_the_nearest(kind: str, data: st.DataObject) -> None
 
 
 @every_pattern
-@thousands
+@many
 @given(data=st.data())
 def test_what_is_left_out_breaks_no_bound(kind: str, data: st.DataObject) -> None:
     params = data.draw(parameter_sets(kind))
@@ -168,7 +168,7 @@ def test_every_parameter_is_described(kind: str) -> None:
 
 
 @every_pattern
-@settings(hundreds, max_examples=60)
+@settings(some, max_examples=40)
 @given(data=st.data())
 def test_a_pattern_keeps_off_itself(kind: str, data: st.DataObject) -> None:
     pattern = data.draw(patterns(kind))
@@ -177,7 +177,7 @@ def test_a_pattern_keeps_off_itself(kind: str, data: st.DataObject) -> None:
 
 
 @every_pattern
-@hundreds
+@some
 @given(data=st.data())
 def test_frame_and_terminals(kind: str, data: st.DataObject) -> None:
     pattern = data.draw(patterns(kind))
@@ -195,7 +195,7 @@ def test_frame_and_terminals(kind: str, data: st.DataObject) -> None:
 
 
 @every_pattern
-@hundreds
+@some
 @given(data=st.data())
 def test_dimensions_measure_their_parameters(kind: str, data: st.DataObject) -> None:
     pattern = data.draw(patterns(kind))
