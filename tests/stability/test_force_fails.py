@@ -10,7 +10,7 @@ from skinfab.fingertip.force.motion import Limits, MotionWatch, find_motions
 from skinfab.fingertip.force.motion_score import published as published_events
 from skinfab.fingertip.force.motion_simulator import grasp_log
 from skinfab.fingertip.force.reconstruct import published, reconstruct
-from skinfab.fingertip.force.shape import ShapeModel, decide, features_of, fit_shapes
+from skinfab.fingertip.force.shape import NONE, ShapeModel, decide, features_of, fit_shapes, misfit_limits
 from skinfab.fingertip.force.tare import tared
 from skinfab.mesh.model import Mesh
 
@@ -132,7 +132,8 @@ def models() -> dict[str, ShapeModel]:
     rng = np.random.default_rng(0)
     learned = [(touches(simulate_grasp(solid, seed=rng)), SHAPES.index(solid.shape)) for solid in LEARNED for _ in range(15)]
     found, shape = [each for each, _ in learned], np.array([k for _, k in learned])
-    return {name: ShapeModel(name, fit_shapes(features_of(found, name), shape, name), {}) for name in ("published", "misfits")}
+    facts = {"misfit_limits": misfit_limits(features_of(found, "misfits"), shape).tolist()}
+    return {name: ShapeModel(name, fit_shapes(features_of(found, name), shape, name), facts) for name in ("published", "misfits")}
 
 
 def test_raw_contacts_are_learned_by_heart(models: dict[str, ShapeModel]) -> None:
@@ -164,6 +165,33 @@ def test_a_square_post_grasped_on_its_middles_is_a_cylinder_too(models: dict[str
     sure = np.mean([models["misfits"].probability([touches(simulate_grasp(s, seed=rng, scene=scene))])[0].max() for s in shapes * 10])
     clear = np.mean([models["misfits"].probability([touches(simulate_grasp(s, seed=rng))])[0].max() for s in shapes * 10])
     assert sure < clear  # and it is told less surely
+
+
+def test_fingers_of_two_grasps_mixed_up_are_surely_something_for_who_asks_the_network_alone(models: dict[str, ShapeModel]) -> None:
+    from dataclasses import replace
+
+    rng = np.random.default_rng(5)
+    grasps = [simulate_grasp(NEW[k % 3], seed=rng) for k in range(30)]
+    mixed = [replace(each, turn=other.turn) for each, other in zip(grasps, grasps[::-1], strict=True)]
+    naive = models["misfits"].probability([touches(each) for each in mixed]).max(axis=1) >= 0.9
+    said = [decide(models["misfits"], [each]) for each in mixed]
+    assert naive.mean() > 0.4 and np.mean([each.sure for each in said]) < 0.4 * naive.mean()
+    assert np.mean([each.shape == NONE for each in said]) > 0.6
+
+
+def test_a_glancing_contact_is_far_off_and_says_so() -> None:
+    side = np.cross(OUT, [0.2, 0.1, 1.0])
+    side /= np.linalg.norm(side, axis=1)[:, None]
+    for lean, least in ((20.0, 0.5), (80.0, 2.0)):
+        force = np.cos(np.radians(lean)) * -OUT + np.sin(np.radians(lean)) * side
+        readings = noisy(force, np.cross(20 * OUT, force))
+        naive = np.linalg.norm(plain(*readings) - 20 * OUT, axis=1)
+        found = locate(*readings)
+        # The line only grazes the dome: noise of a tenth of a millimetre across it is millimetres along.
+        assert np.nanquantile(naive, 0.9) > least and np.median(found.sd_mm) > 0.8 * np.nanmedian(naive)
+        grazed = found.trusted
+        error = np.linalg.norm(found.point - 20 * OUT, axis=1)[grazed]
+        assert np.mean(error < 3 * found.sd_mm[grazed]) > 0.93
 
 
 def test_a_finger_that_does_not_touch_makes_up_a_contact_for_who_does_not_look(models: dict[str, ShapeModel]) -> None:

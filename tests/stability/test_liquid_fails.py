@@ -1,0 +1,35 @@
+"""Where a liquid is made up or missed: each test shows that the naive way fails, and what is done instead."""
+
+import numpy as np
+
+from skinfab.fingertip.force.liquid import stirred
+from skinfab.fingertip.force.liquid_model import train_liquid
+from skinfab.fingertip.force.liquid_simulator import CupScene, stir
+from skinfab.fingertip.force.logs import WrenchLog
+from skinfab.fingertip.force.simulator import MATERIALS, slide
+
+
+def test_a_hand_that_trembles_is_water_for_who_knows_only_noise() -> None:
+    scene = CupScene(tremble_mm_s2=200.0)
+    still = [stir(water_kg=0.0, seconds=3, scene=scene, seed=[k, 1]) for k in range(20)]
+    assert np.mean([stirred(log).liquid for log in still]) > 0.3  # 1 % is stated
+    model = train_liquid([stir(water_kg=0.0, seconds=30, scene=scene, seed=[k, 2]) for k in range(3)], false_alarm=0.05, seconds=3.0).model
+    assert sum(model.judge(log).liquid for log in still) <= 3
+    assert model.judge(stir(water_kg=0.2, seconds=3, scene=scene, seed=3)).liquid
+
+
+def test_a_slide_over_a_towel_wanders_as_water_does_and_is_none() -> None:
+    towels = [slide(MATERIALS["towel"], seed=k, label="towel") for k in range(8)]
+    pulled = [WrenchLog(log.name, log.time[250:], log.force[250:], log.moment[250:]) for log in towels]
+    found = [stirred(log) for log in pulled]
+    water = stirred(stir(water_kg=0.005, seed=1))
+    assert np.median([each.wander_mm for each in found]) > water.wander_mm  # a limit on how far lines wander takes it for water
+    assert sum(each.liquid for each in found) <= 2
+
+
+def test_a_sensor_that_drifts_wanders_and_does_not_swing() -> None:
+    scene = CupScene(drift_nmm_s=10.0)
+    found = [stirred(stir(water_kg=0.0, scene=scene, seed=k)) for k in range(10)]
+    still = [stirred(stir(water_kg=0.0, seed=k)) for k in range(10)]
+    assert min(each.wander_mm for each in found) > 2 * max(each.wander_mm for each in still)
+    assert sum(each.liquid for each in found) <= 1
