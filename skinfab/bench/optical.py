@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from skinfab.bench.flatten import REPEATS, read_csv, write_csv
+from skinfab.bench.optical_ablation import measure_terms
 from skinfab.bench.optical_contour import FRAMES, IMPROVED, PUBLISHED, ROUNDS, RUNS, SEEDS, learned, measure_rates, measure_shapes
 from skinfab.bench.optical_depth import measure_depths
 from skinfab.bench.timing import one_processor
@@ -14,8 +15,8 @@ from skinfab.progress import Progress, part_of, silent
 
 
 def run(folder: Path, *, repeats: int = REPEATS, seeds: int = SEEDS, runs: int = RUNS, progress: Progress = silent) -> dict[str, Any]:
-    """Measure, and write optical_shapes.csv, optical_contour.csv and .png, optical_reconstruction.png, optical_depth.csv, the frames' files
-    and optical.txt.
+    """Measure, and write optical_shapes.csv, optical_contour.csv and .png, optical_reconstruction.png, optical_depth.csv,
+    optical_ablation.csv, the frames' files and optical.txt.
 
     Parameters
     ----------
@@ -32,7 +33,7 @@ def run(folder: Path, *, repeats: int = REPEATS, seeds: int = SEEDS, runs: int =
     Returns
     -------
     dict
-        "sentence", "notes" (what to know of the measurement), "shapes", "contours", "depths" and "frames".
+        "sentence", "notes" (what to know of the measurement), "shapes", "contours", "depths", "terms" and "frames".
     """
     from skinfab.bench.optical_chart import draw_rates, draw_reconstruction
     from skinfab.bench.optical_frame import frame
@@ -47,17 +48,18 @@ def run(folder: Path, *, repeats: int = REPEATS, seeds: int = SEEDS, runs: int =
         notes += [] if alone else ["this system cannot keep a process on one processor"]
         feel = learned(paper_fingertip())
         write_csv(measure_shapes(feel, runs=runs, seeds=seeds, progress=part_of(progress, 0.05, 0.3)), folder / "optical_shapes.csv")
-        write_csv(measure_rates(feel, seeds=seeds, progress=part_of(progress, 0.3, 0.88)), folder / "optical_contour.csv")
+        write_csv(measure_rates(feel, seeds=seeds, progress=part_of(progress, 0.3, 0.86)), folder / "optical_contour.csv")
         draw_reconstruction(feel, folder / "optical_reconstruction.png")
-        write_csv(measure_depths(progress=part_of(progress, 0.88, 0.9)), folder / "optical_depth.csv")
+        write_csv(measure_depths(progress=part_of(progress, 0.86, 0.88)), folder / "optical_depth.csv")
+        write_csv(measure_terms(progress=part_of(progress, 0.88, 0.9)), folder / "optical_ablation.csv")
     # From here on only what the tables hold is used, so that chart and sentence cannot say anything else.
-    made, rates, deep = (read_csv(folder / f"optical_{name}.csv") for name in ("shapes", "contour", "depth"))
+    made, rates, deep, terms = (read_csv(folder / f"optical_{name}.csv") for name in ("shapes", "contour", "depth", "ablation"))
     draw_rates(rates, folder / "optical_contour.png")
     said = sentence(made, rates)
     cost = frame(folder, repeats=repeats, progress=part_of(progress, 0.9, 1.0))
     said, notes = f"{said} {cost['sentence']}", [*notes, *cost["notes"]]
     atomic_write(folder / "optical.txt", "\n".join([said, *notes]) + "\n")
-    return {"sentence": said, "notes": notes, "shapes": made, "contours": rates, "depths": deep, "frames": cost["rows"]}
+    return {"sentence": said, "notes": notes, "shapes": made, "contours": rates, "depths": deep, "terms": terms, "frames": cost["rows"]}
 
 
 def sentence(made: Sequence[Mapping[str, Any]], rates: Sequence[Mapping[str, Any]]) -> str:
