@@ -13,6 +13,9 @@ from gui.jobs.worker import Outcome, outcome_of
 #: How often the window looks for answers while it waits for one, ms.
 _LOOK_MS = 20
 
+#: A question that takes longer, s, is one that never ends.
+_PATIENCE_S = 10.0
+
 
 class Background:
     """One thread; of questions under the same key only the newest is answered.
@@ -41,11 +44,15 @@ class Background:
             self._timer = self._clock.after(_LOOK_MS, self._look)
 
     def close(self) -> None:
-        """Forget what was asked, and end the thread."""
+        """Forget what was asked, and end the thread.
+
+        That is waited for: a thread that outlives the window is the last to hold it, and Tk aborts the process when it is let go there.
+        """
         self._newest.clear()
         self._questions.put(None)
         if self._timer is not None:
             self._clock.after_cancel(self._timer)
+        self._thread.join(timeout=_PATIENCE_S)
 
     def _run(self) -> None:
         while (asked := self._questions.get()) is not None:

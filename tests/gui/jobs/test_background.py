@@ -60,3 +60,16 @@ def test_a_fault_is_a_sentence(root, background):
     background.ask("strain", refuse, lambda o: heard.append(o.sentence))
     wait(root, lambda: heard)
     assert heard == ["the path leaves piece P1"]
+
+
+def test_closed_it_leaves_no_thread_that_holds_the_window(root):
+    made, begun = Background(root), threading.Event()
+
+    def slow():
+        begun.set()
+        time.sleep(0.05)
+
+    made.ask("strain", slow, pytest.fail)
+    assert begun.wait(30) and any(t.name == "background" for t in threading.enumerate())
+    made.close()
+    assert not made._thread.is_alive()
