@@ -37,6 +37,7 @@ class Found:
 
     log: WrenchLog
     poses: Poses
+    drawn: Poses
     centre: Centre
     published: Centre | None
     mass: Mass | None
@@ -203,7 +204,8 @@ def run(args: argparse.Namespace) -> int:
     with staged_folder(args.output) as folder:
         (folder / "gravity.csv").write_text(_csv(_rows(found)))
         (folder / "result.json").write_text(json.dumps(result, indent=1, allow_nan=False) + "\n")
-        draw_centres([(e.log.name, e.poses, e.centre, e.published) for e in found], folder / "gravity.png", simulated=simulated)
+        drawn = [(e.log.name, e.drawn, e.centre, e.published) for e in found]
+        draw_centres(drawn, folder / "gravity.png", simulated=simulated, weighed=model is not None)
     if args.json:
         print(json.dumps(result, allow_nan=False))
         return 0
@@ -282,7 +284,11 @@ def _one(path: Path, args: argparse.Namespace, model: HandModel | None) -> tuple
         mass = fit_mass(poses.force, of_force) if model is None else mass_with(model, poses)
     except (InputError, RefusedError) as fault:
         notes.append(f"{log.name}: no mass: {fault}")
-    return Found(log, poses, centre, published, mass), notes
+    drawn = poses
+    if model is not None:  # the lines of what is held alone
+        force, moment, _ = model.less(poses.force, poses.moment)
+        drawn = replace(poses, force=force, moment=moment)
+    return Found(log, poses, drawn, centre, published, mass), notes
 
 
 def _facts(each: Found) -> dict[str, Any]:

@@ -20,7 +20,9 @@ _DPI, _MOST = 130, 6
 _LEAST_MM = 5.0
 
 
-def draw_centres(objects: Sequence[tuple[str, Poses, Centre, Centre | None]], path: Path, *, simulated: bool) -> None:
+def draw_centres(
+    objects: Sequence[tuple[str, Poses, Centre, Centre | None]], path: Path, *, simulated: bool, weighed: bool = False
+) -> None:
     """Write the figure as PNG: six objects at most, each with its lines (offset taken off), its centre and the published one."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
@@ -34,7 +36,7 @@ def draw_centres(objects: Sequence[tuple[str, Poses, Centre, Centre | None]], pa
     figure.suptitle(f"Centre of gravity{' (simulated)' if simulated else ''}{more}", fontsize=10)
     for k, (name, poses, centre, published) in enumerate(shown):
         axes = figure.add_subplot(rows, columns, k + 1, projection="3d")
-        _draw(axes, poses, centre, published)
+        _draw(axes, poses, centre, published, "centre, hand weighed" if weighed else "centre, offset fitted")
         axes.set_title(f"{name}: +- {centre.sd_mm:.2f} mm", fontsize=8)
         if k == 0:
             axes.legend(fontsize=6, loc="upper left")
@@ -42,7 +44,7 @@ def draw_centres(objects: Sequence[tuple[str, Poses, Centre, Centre | None]], pa
         figure.savefig(partial)
 
 
-def _draw(axes: Axes3D, poses: Poses, centre: Centre, published: Centre | None) -> None:
+def _draw(axes: Axes3D, poses: Poses, centre: Centre, published: Centre | None, label: str) -> None:
     q, g = lines(poses.force, poses.moment - centre.offset)
     apart = 0.0 if published is None else float(np.linalg.norm(published.point - centre.point))
     reach = max(_LEAST_MM, 1.3 * apart, 2 * float(centre.residual_mm.max()))
@@ -50,7 +52,7 @@ def _draw(axes: Axes3D, poses: Poses, centre: Centre, published: Centre | None) 
     ends = (q + (along - reach) * g, q + (along + reach) * g)
     for k, (a, b) in enumerate(zip(*ends, strict=True)):
         axes.plot(*np.stack([a, b], axis=1), color="#0072B2", lw=0.8, alpha=0.7, label="line of a pose" if k == 0 else None)
-    axes.plot(*centre.point[:, None], "o", color="#000000", ms=5, label="centre, offset fitted")
+    axes.plot(*centre.point[:, None], "o", color="#000000", ms=5, label=label)
     if published is not None:
         axes.plot(*published.point[:, None], "x", color="#D55E00", ms=7, mew=2, label="as published")
     for each, name, middle in zip((axes.set_xlim, axes.set_ylim, axes.set_zlim), "xyz", centre.point.tolist(), strict=True):

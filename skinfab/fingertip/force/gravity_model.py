@@ -133,12 +133,13 @@ def centre_with(model: HandModel, poses: Poses) -> Centre:
     else:
         raise RefusedError(f"the {n} poses do not tell the centre of gravity; turn the hand farther between them")
     misfit, chance, factor = explained(float(residual @ weighed), 3 * n - 3, scaled, poses.freedom)
-    q, g = lines(F, M)
+    # What is left of the offsets, as these poses show it.
+    left = -model.covariance @ shared.T @ weighed
+    offset = left[3:6] - np.cross(t, left[:3])
+    q, g = lines(F, M - offset)
     away = q - t
     distance = np.linalg.norm(away - np.einsum("ni,ni->n", away, g)[:, None] * g, axis=1)
-    return Centre(
-        np.asarray(t), np.asarray(factor * np.linalg.inv(information)), model.offset[3:].copy(), eigenvalue, distance, misfit, chance
-    )
+    return Centre(np.asarray(t), np.asarray(factor * np.linalg.inv(information)), offset, eigenvalue, distance, misfit, chance)
 
 
 def mass_with(model: HandModel, poses: Poses) -> Mass:
