@@ -2,7 +2,6 @@
 
 import contextlib
 import io
-import re
 import shlex
 from pathlib import Path
 
@@ -16,9 +15,11 @@ FEWER = ("--images 1000", "--images 100")
 
 
 def commands() -> list[list[str]]:
-    blocks = re.findall(r"^```\n(.*?)^```", PAGE.read_text(), re.DOTALL | re.MULTILINE)
-    lines = "".join(blocks).replace("\\\n", " ").splitlines()
-    return [shlex.split(line.replace(*FEWER), comments=True)[1:] for line in lines if line.startswith("skinfab ")]
+    lines, inside, kept = PAGE.read_text().replace("\\\n", " ").splitlines(), False, []
+    for line in lines:
+        inside = inside != line.startswith("```")
+        kept += [line] if inside and line.startswith("skinfab ") else []
+    return [shlex.split(line.replace(*FEWER), comments=True)[1:] for line in kept]
 
 
 def test_commands_run_as_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
