@@ -16,18 +16,45 @@ from skinfab.bench.timing import one_processor
 from skinfab.fingertip.array.ablation import ablation
 from skinfab.fingertip.array.geometry import Geometry
 from skinfab.fingertip.array.simulator import Device
-from skinfab.fingertip.array.study import IMPROVED, PUBLISHED, locators, rms, rods_on, scan, three_fingers, turners, twirls, worst
+from skinfab.fingertip.array.study import (
+    IMPROVED,
+    PUBLISHED,
+    locators,
+    on_a_layer,
+    rms,
+    rods_on,
+    scan,
+    three_fingers,
+    tilts,
+    turners,
+    twirls,
+    worst,
+)
 from skinfab.progress import Progress, silent
 
 DENSITIES = ("8x8", "8x16", "16x16")
 #: Arrays that each figure is taken of; rods in each direction on each; logs of twirling.
 DEVICES, RODS, TWIRLS = 10, 6, 20
+#: Presses that pull along the skin, on each array.
+TILTS = 12
+#: Arrays under another field, the seed's of 8 x 8.
+LAYERS = 4
 #: Frames whose reading is timed.
 _TIMED = 60
 SPAN = "span"
 #: What the seed measured, by experiment; `line between` is its figure 11, `line of three` its guess for three fingers.
 SEED = {"along": 0.5, "around": 10.0, "line between": 20.0, "line of three": 7.0}
-UNITS = {"along": "mm", "around": "deg", "line": "deg", "line between": "deg", "line of three": "deg"}
+UNITS = {
+    "along": "mm",
+    "around": "deg",
+    "line": "deg",
+    "line between": "deg",
+    "tilt along": "deg",
+    "tilt around": "deg",
+    "line of three": "deg",
+    "layer along": "mm",
+    "layer around": "deg",
+}
 
 
 @dataclass(frozen=True)
@@ -103,6 +130,7 @@ def measure(
     densities: Sequence[str] = DENSITIES,
     devices: int = DEVICES,
     rods: int = RODS,
+    layers: int = LAYERS,
     repeats: int = REPEATS,
     progress: Progress = silent,
 ) -> list[Row]:
@@ -130,9 +158,18 @@ def measure(
                     rows.append(
                         Row(experiment, density, f"{name}, where sure", worst(errors[sure]), rms(errors[sure]), us, int(sure.sum()))
                     )
+        off = tilts(each, TILTS)
+        for k_axis, experiment in enumerate(("tilt along", "tilt around")):
+            for name, errors in off.items():
+                known = errors[np.isfinite(errors[:, k_axis]), k_axis]
+                rows.append(Row(experiment, density, name, worst(known), rms(known), float("nan"), len(known)))
         fingers = [Device(geometry, seed=100 + j) for j in range(3)]
         for name, errors in three_fingers(fingers, rods).items():
             rows.append(Row("line of three", density, name, worst(errors), rms(errors), float("nan"), len(errors)))
+    progress(0.98, "another field")
+    for axis, by in on_a_layer(range(layers)).items():
+        for name, errors in by.items():
+            rows.append(Row(f"layer {axis}", densities[0], name, worst(errors), rms(errors), float("nan"), len(errors)))
     return rows
 
 

@@ -7,7 +7,7 @@ import importlib
 
 #: Sub-command and what it is for; `skinfab/cli/array_NAME.py` holds it.
 STEPS = {
-    "simulate": "logs of a simulated array, with what is true: presses, rods, and a bar that is twirled",
+    "simulate": "logs of a simulated array, with what is true: presses, some that pull along the skin, rods, and a bar that is twirled",
     "train": "learn an array's gains and skin from presses at known places, and say how good that is on logs that were held out",
     "run": "where the finger is touched, how hard, along which line, and what moves, in a log or as a port sends it",
     "bench": "the published ways beside the improved ones, by density of the array",

@@ -113,12 +113,13 @@ def _from_port(args: argparse.Namespace) -> tuple[tuple[Reading, ...], ArrayWatc
 
     from skinfab.errors import InputError
     from skinfab.fingertip.array.geometry import tactel_columns
-    from skinfab.fingertip.array.watch import ArrayWatch
+    from skinfab.fingertip.array.watch import ArrayWatch, warm_up
     from skinfab.readout.serial_port import BAUD, SerialPort
     from skinfab.readout.source import HostClock
 
     readings: list[Reading] = []
     latency: list[float] = []
+    warm_up()
     with SerialPort(args.port, baud=args.baud or BAUD) as source:
         model, notes = _model(args, tactel_columns(source.stream)[0])
         watch = ArrayWatch(source.stream, model)
@@ -141,6 +142,10 @@ def _from_port(args: argparse.Namespace) -> tuple[tuple[Reading, ...], ArrayWatc
         f"{count} frames were {how}" for how, count in (("lost", counts.lost), ("damaged", counts.bad), ("late", counts.late)) if count
     ]
     times = {"median": sorted(latency)[len(latency) // 2], "worst": max(latency)}
+    if (rate := watch.stream.rate_hz) and times["median"] > 1000 / rate:
+        notes.append(
+            f"readings lag {times['median']:.0f} ms behind their frames, of which {rate:g} come in a second: this computer is too busy"
+        )
     return tuple(readings), watch, {"source": args.port, "sha256": None, "notes": notes, "latency_ms": times}
 
 

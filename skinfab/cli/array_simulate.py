@@ -21,7 +21,13 @@ EVENTS = ["kind", "start_s", "end_s", "along_mm", "around_mm", "contact"]
 def add_options(p: argparse.ArgumentParser) -> None:
     """What to simulate and where to."""
     p.add_argument("--density", metavar="RxS", default="8x8", help="rings and stripes on the seed's finger, such as 8x16 (default: 8x8)")
-    p.add_argument("--logs", metavar="N", type=steps.counting, default=5, help="of presses (default: 5); of rods and twirling two")
+    p.add_argument(
+        "--logs",
+        metavar="N",
+        type=steps.counting,
+        default=5,
+        help="of presses (default: 5); of rods and twirling two, of presses that also pull along the skin one",
+    )
     p.add_argument("--contacts", metavar="N", type=steps.counting, default=40, help="in a log (default: 40)")
     p.add_argument("--seed", type=steps.seed, default=0, help="of the array and of what touches it (default: 0)")
     p.add_argument("-o", "--output", metavar="DIR", type=Path, required=True, help="folder for the logs")
@@ -33,7 +39,7 @@ def run(args: argparse.Namespace) -> int:
     """Simulate, write, and say what was written."""
     from skinfab.files import atomic_write
     from skinfab.fingertip.array.geometry import Geometry
-    from skinfab.fingertip.array.protocols import presses, rods, twirl
+    from skinfab.fingertip.array.protocols import presses, pushes, rods, twirl
     from skinfab.fingertip.array.simulator import Device
     from skinfab.readout.logs.log import write_log
     from skinfab.staging import staged_folder
@@ -42,6 +48,7 @@ def run(args: argparse.Namespace) -> int:
     with staged_folder(args.output) as folder:
         for k in range(1, args.logs + 1):
             write_log(presses(device, args.contacts, seed=1000 * args.seed + k), folder / f"presses-{k}.csv")
+        write_log(pushes(device, args.contacts, seed=1000 * args.seed + 1), folder / "pushes-1.csv")
         for k in (1, 2):
             write_log(rods(device, args.contacts, seed=1000 * args.seed + k), folder / f"rods-{k}.csv")
             log, events = twirl(device, seed=1000 * args.seed + k)

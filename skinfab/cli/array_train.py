@@ -43,7 +43,7 @@ def run(args: argparse.Namespace) -> int:
     from skinfab.errors import InputError
     from skinfab.files import require_apart
     from skinfab.fingertip.array.geometry import Geometry
-    from skinfab.fingertip.array.judge import held_out
+    from skinfab.fingertip.array.judge import better, held_out
     from skinfab.fingertip.array.learn import learn, save_array
     from skinfab.fingertip.array.logs import read_array_log
     from skinfab.progress import terminal_progress
@@ -59,13 +59,15 @@ def run(args: argparse.Namespace) -> int:
     geometry = Geometry(rings, stripes, pitch, args.finger_radius, args.skin, args.fill)
     with terminal_progress(quiet=args.json) as progress:
         progress(0.0, "learning")
-        model = learn(logs, geometry)
+        learned = learn(logs, geometry)
         progress(0.3, "judging on each log what was learned from the others")
         errors = held_out(logs, geometry)
         progress(1.0, "done")
-    result = _facts(logs, model, errors)
+    won, worse = better(errors)
+    model = learned.model if won else learned.drawn
+    result = _facts(logs, model, errors, [*learned.notes, *_poor(won, worse)], "learned" if won else "drawn")
     with staged_folder(args.output) as folder:
-        save_array(folder / "model.npz", model, {key: result[key] for key in ("made_from", "simulated", "errors", "noise")})
+        save_array(folder / "model.npz", model, {key: result[key] for key in ("made_from", "simulated", "errors", "noise", "kept")})
         _write(folder, model, errors, result)
     if args.json:
         print(json.dumps(result, allow_nan=False))
@@ -88,18 +90,29 @@ def _require_different(logs: Sequence[ArrayLog]) -> None:
         seen[log.sha256] = log.name
 
 
-def _facts(logs: Sequence[ArrayLog], model: ArrayModel, errors: Sequence[Error]) -> dict[str, Any]:
+def _poor(won: bool, worse: Sequence[str]) -> list[str]:
+    """What to say where learning does not pay."""
+    if not won:
+        return [
+            "what was learned finds places no better than the array as drawn, on logs that were held out: the drawing is kept, with the "
+            "modulus that was learned; press more places, all over the array"
+        ]
+    return [f"what was learned is no better than the array as drawn in {name}; press more places, all over the array" for name in worse]
+
+
+def _facts(logs: Sequence[ArrayLog], model: ArrayModel, errors: Sequence[Error], said: Sequence[str], kept: str) -> dict[str, Any]:
     import numpy as np
 
     return {
         "simulated": any(log.simulated for log in logs),
         "made_from": [{"file": log.name, "sha256": log.sha256, "contacts": len(log.touched())} for log in logs],
+        "kept": kept,
         "geometry": asdict(model.geometry),
         "rubber": asdict(model.rubber),
         "gain_scatter": float(np.std(model.gains)),
         "noise": float(np.median([log.noise for log in logs])),
         "errors": [asdict(error) for error in errors],
-        "notes": [note for log in logs for note in log.notes],
+        "notes": [*(note for log in logs for note in log.notes), *said],
     }
 
 

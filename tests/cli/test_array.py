@@ -85,6 +85,35 @@ def test_a_log_is_read(made: Path, tmp_path: Path, capsys: pytest.CaptureFixture
     assert np.sqrt(np.mean(np.square(off))) < 0.3 and {each["simulated"] for each in frames} == {"1"}
 
 
+def test_pulls_along_the_skin_are_told(made: Path, tmp_path: Path) -> None:
+    words = ["array", "run", str(made / "sim/pushes-1.csv"), "--model", str(made / "train/model.npz"), "-o", str(tmp_path / "o")]
+    assert main([*words, "--json"]) == 0
+    log, off = read_log(made / "sim/pushes-1.csv").recording, []
+    force, along, around = (log.column(name)[15:] for name in ("force_n", "along_n", "around_n"))
+    for k, each in enumerate(rows(tmp_path / "o/frames.csv")):
+        if force[k] > 0:
+            assert each["state"] == "point" and float(each["radius_mm"]) == 0 and each["line_deg"] == ""
+            off += [float(each["tilt_along_deg"]) - math.degrees(math.atan2(along[k], force[k]))]
+            off += [float(each["tilt_around_deg"]) - math.degrees(math.atan2(around[k], force[k]))]
+    assert len(off) == 72 and np.sqrt(np.mean(np.square(off))) < 2.5
+
+
+def test_several_contacts_are_told_each(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    device = Device(seed=4)
+    a, b = device.skin.pressed(1.0, axial_mm=6.0, angle_rad=0.0), device.skin.pressed(1.2, axial_mm=18.0, angle_rad=1.2)
+    Z = np.array([0 * a] * 18 + [a] * 10 + [a + b] * 10 + [b] * 10)
+    volts = device.volts(Z, np.random.default_rng(0)).reshape(len(Z), -1)
+    write_log(Recording.of_values(device.geometry.stream(simulated=True), volts, device_time=np.arange(len(Z)) / 15), tmp_path / "ab.csv")
+    assert main(["array", "run", str(tmp_path / "ab.csv"), "-o", str(tmp_path / "o")]) == 0
+    assert "events: 2 touch, 1 lift" in capsys.readouterr().out
+    events = rows(tmp_path / "o/events.csv")
+    assert [(each["kind"], each["contact"]) for each in events] == [("touch", "1"), ("touch", "2"), ("lift", "1")]
+    both = [each for each in rows(tmp_path / "o/frames.csv") if each["state"] == "several"]
+    assert len(both) == 10 and all(float(each["force_n"]) == pytest.approx(2.2, abs=0.1) for each in both)
+    assert all(len(each["points"].split()) == 2 for each in both)
+    assert json.loads((tmp_path / "o/result.json").read_text())["largest_force_n"] == pytest.approx(2.2, abs=0.1)
+
+
 def test_without_a_model_the_array_is_as_drawn(made: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["array", "run", str(made / "sim/presses-1.csv"), "-o", str(tmp_path / "o"), "--json"]) == 0
     result = json.loads(capsys.readouterr().out)
@@ -95,7 +124,7 @@ def test_without_a_model_the_array_is_as_drawn(made: Path, tmp_path: Path, capsy
 def test_a_port_is_read_as_it_comes(made: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     recording, truth = twirl(Device(seed=4), seed=4001)
     with PtyServer(recording.stream, recording, rate_hz=0) as device:
-        words = ["array", "run", "--port", str(device.path), "--seconds", "3", "--model", str(made / "train/model.npz")]
+        words = ["array", "run", "--port", str(device.path), "--seconds", "8", "--model", str(made / "train/model.npz")]
         assert main([*words, "-o", str(tmp_path / "o"), "--json"]) == 0
     result = json.loads(capsys.readouterr().out)
     assert result["simulated"] and result["frames"] >= 95 and 0 < result["latency_ms"]["median"] <= result["latency_ms"]["worst"]
@@ -111,7 +140,7 @@ def test_a_port_that_sends_another_array(made: Path, tmp_path: Path, capsys: pyt
 
 
 def test_bench_writes_all_of_it(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(bench, "measure", partial(bench.measure, densities=("8x8",), devices=1, rods=1))
+    monkeypatch.setattr(bench, "measure", partial(bench.measure, densities=("8x8",), devices=1, rods=1, layers=1))
     monkeypatch.setattr(bench, "track", partial(bench.track, logs=1))
     monkeypatch.setattr(bench, "ablation", partial(bench.ablation, devices=1, rods=1))
     assert main(["array", "bench", "--repeats", "1", "-o", str(tmp_path), "--json"]) == 0
@@ -157,7 +186,7 @@ def test_logs_that_cannot_be_learned_from(made: Path, tmp_path: Path, capsys: py
     copy.write_bytes(one.read_bytes())
     out = ["-o", str(tmp_path / "o")]
     assert main(["array", "train", str(one), str(copy), *out]) == 1 and "the same log" in capsys.readouterr().err
-    assert main(["array", "train", str(one), *out]) == 1 and "give at least two" in capsys.readouterr().err
+    assert main(["array", "train", str(one), *out]) == 1 and "give two or more" in capsys.readouterr().err
     dense = presses(Device(Geometry.of_density("8x16")), 20)
     write_log(dense, tmp_path / "dense.csv")
     assert main(["array", "train", str(one), str(tmp_path / "dense.csv"), *out]) == 1 and "logs of one array" in capsys.readouterr().err

@@ -160,7 +160,8 @@ def test_three_tactels_are_not_enough_round_the_finger() -> None:
 def test_a_dead_tactel_moves_the_peak() -> None:
     Z = SKIN.pressed(0.5, axial_mm=12.2, angle_rad=0.3)
     Z[3, 0] = np.nan  # the highest but one
-    assert abs(FIND(Z).axial_mm - 12.2) > 1
+    assert abs(FIND(np.nan_to_num(Z)).axial_mm - 12.2) > 1
+    assert FIND(Z).state == "flat" and abs(FIND(Z).axial_mm - 12.2) < 1  # where the summit may be missing, that is said
     (only,) = MATCH(Z).contacts
     assert (only.axial_mm, only.angle_rad) == pytest.approx((12.2, 0.3), abs=0.01)
 

@@ -9,8 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from skinfab.errors import InputError
 from skinfab.fingertip.array.geometry import Geometry
-from skinfab.fingertip.array.learn import learn
+from skinfab.fingertip.array.learn import Learned, learn
 from skinfab.fingertip.array.logs import ArrayLog
 from skinfab.fingertip.array.matched import ArrayModel, Matcher
 from skinfab.fingertip.array.study import PUBLISHED, locators, turners
@@ -54,17 +55,36 @@ def held_out(logs: Sequence[ArrayLog], geometry: Geometry) -> tuple[Error, ...]:
         As `learn`; there are fewer than two logs.
     """
     pressed = [k for k, log in enumerate(logs) if _of(log, rods=False).size]
+    if len(pressed) < 2:
+        many = "is 1 log" if len(pressed) == 1 else "are no logs"
+        raise InputError(f"there {many} of presses; give two or more, each is judged by what the others teach")
     errors: dict[tuple[str, str], list[FloatArray]] = {}
     for train, test in leave_one_out([logs[k].name for k in pressed]):
-        model = learn([logs[pressed[k]] for k in train], geometry)
+        made = learn([logs[pressed[k]] for k in train], geometry)
         for k in test:
-            _add(errors, logs[pressed[k]], geometry, model)
+            _add(errors, logs[pressed[k]], geometry, made)
     # Logs of rods alone teach nothing, so all that was learned may be judged on them.
     if rods := [log for k, log in enumerate(logs) if k not in pressed and _of(log, rods=True).size]:
         whole = learn([logs[k] for k in pressed], geometry)
         for log in rods:
             _add(errors, log, geometry, whole)
     return tuple(_error(way, quantity, each) for (way, quantity), each in errors.items())
+
+
+def better(errors: Sequence[Error]) -> tuple[bool, tuple[str, ...]]:
+    """Whether what was learned errs less than the drawing on logs held out, all in all, and the quantities in which it does not.
+
+    Examples
+    --------
+    >>> def error(way, quantity, rms): return Error(way, quantity, rms, rms, rms, rms, 10)
+    >>> drawn = [error("drawn", "axial", 0.05), error("drawn", "angle", 1.0)]
+    >>> better([*drawn, error("learned", "axial", 0.03), error("learned", "angle", 1.1)])
+    (True, ('angle',))
+    """
+    by = {(each.way, each.quantity): each.rms for each in errors}
+    ratio = {name: by["learned", name] / max(by["drawn", name], 1e-300) for name in QUANTITIES if ("learned", name) in by}
+    whole = math.prod(ratio[name] for name in ("axial", "angle") if name in ratio)
+    return whole < 1, tuple(name for name, value in ratio.items() if value >= 1)
 
 
 def _of(log: ArrayLog, *, rods: bool) -> NDArray[np.int64]:
@@ -74,12 +94,13 @@ def _of(log: ArrayLog, *, rods: bool) -> NDArray[np.int64]:
     return touched[np.isfinite(line[touched]) == rods]
 
 
-def _add(errors: dict[tuple[str, str], list[FloatArray]], log: ArrayLog, geometry: Geometry, learned: ArrayModel) -> None:
-    models = {"drawn": ArrayModel.nominal(geometry), "learned": learned}
+def _add(errors: dict[tuple[str, str], list[FloatArray]], log: ArrayLog, geometry: Geometry, learned: Learned) -> None:
+    models = {"drawn": ArrayModel.nominal(geometry), "learned": learned.model}
     for way in WAYS:
         if (frames := _of(log, rods=False)).size:
             locate = locators(geometry, models.get(way))[PUBLISHED if way == "published" else "matched"]
-            found = np.array([locate(log.Z[k]) for k in frames])
+            # What was learned says places as the labels do, shifted where they are.
+            found = np.array([locate(log.Z[k]) for k in frames]) + (learned.shift if way == "learned" else 0.0)
             angle = [math.degrees(math.remainder(a, math.tau)) for a in found[:, 1] - np.radians(log.truth["angle_deg"][frames])]
             errors.setdefault((way, "axial"), []).append(found[:, 0] - log.truth["axial_mm"][frames])
             errors.setdefault((way, "angle"), []).append(np.array(angle))

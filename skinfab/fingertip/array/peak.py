@@ -42,8 +42,9 @@ class Peak:
         Evaluations beyond the first.
     state : str
         ``peak``; ``edge``: it lies beyond the first or last ring, or could (the place is the last one on the array); ``flat``: three
-        tactels or more in a row read nearly the same, or are at the end of their range (the place is their middle); ``lost``:
-        no peak within a tactel and a half of the highest tactel; ``none``: nothing reads as much as was asked for.
+        tactels or more in a row read nearly the same (the place is their middle), or one beside the highest reads nothing or is at the end
+        of its range (the place is that with as much there); ``lost``: no peak within a tactel and a half of the highest; ``none``:
+        nothing reads as much as was asked for.
     """
 
     axial_mm: float
@@ -193,10 +194,23 @@ class PeakFinder:
         self._kind, self._floor = self._coefficients.kind, floor
 
     def __call__(self, Z: FloatArray) -> Peak:
-        """The peak of a frame's deflections (rings, stripes); tactels that are NaN count as not deflected."""
-        x, y, height, steps, state = self.tactels(Z)
+        """The peak of a frame's deflections (rings, stripes).
+
+        Tactels that are NaN count as not deflected, but beside the highest one as much as that: there may be the summit.
+        """
+        beside = self._missing_beside_the_highest(Z)
+        x, y, height, steps, state = self.tactels(np.where(beside, highest(Z), Z) if beside.any() else Z)
+        state = _FLAT if beside.any() and state != _NONE else state
         axial, angle = self.geometry.from_tactels(x, y) if state != _NONE else (math.nan, math.nan)
         return Peak(axial, angle, height, steps, STATES[state])
+
+    def _missing_beside_the_highest(self, Z: FloatArray) -> NDArray[np.bool_]:
+        missing: NDArray[np.bool_] = ~np.isfinite(Z)
+        if not missing.any() or missing.all():
+            return np.zeros(Z.shape, dtype=bool)
+        i, j = np.unravel_index(int(np.where(missing, -np.inf, Z).argmax()), Z.shape)
+        ring, stripe = np.arange(len(Z)) - i, (np.arange(Z.shape[1]) - j + 1) % Z.shape[1]
+        return missing & (np.abs(ring) <= 1)[:, None] & (stripe <= 2)
 
     def tactels(self, Z: FloatArray) -> tuple[float, float, float, int, int]:
         """The same as bare numbers: ring, stripe, height, steps, and the number of the state in `STATES`."""

@@ -17,6 +17,8 @@ FloatArray = NDArray[np.float64]
 
 #: The seed's loads: 50 g on a 3 mm tip, 2 N on a rod.
 PRESS_N, ROD_N = 0.4903, 2.0
+#: The largest pull along the skin, as a part of the force: 27 degrees.
+STEEPEST = 0.5
 #: What is known of each frame; NaN where it is not touched, or is no rod.
 TRUTHS = (("axial_mm", "mm"), ("angle_deg", "deg"), ("force_n", "N"), ("line_deg", "deg"))
 #: A log begins untouched for so long, s, and every contact lasts so many frames.
@@ -103,6 +105,32 @@ def presses(device: Device, count: int, *, seed: int = 0) -> Recording:
         np.full(count, math.nan),
     )
     return recorded(device, touches, rng)
+
+
+def pushes(device: Device, count: int, *, seed: int = 0) -> Recording:
+    """A log of presses that also pull along the skin, by up to half of the force; ``along_n`` and ``around_n`` say how much.
+
+    Examples
+    --------
+    >>> pushes(Device(), 5).stream.names[-2:]
+    ('along_n', 'around_n')
+    """
+    rng = np.random.default_rng((seed, 14))
+    length = (device.geometry.rings - 1) * device.geometry.ring_pitch
+    axial, angle = rng.uniform(0.15, 0.85, count) * length, rng.uniform(-math.pi, math.pi, count)
+    force, part, way = rng.uniform(0.7, 2.0, count), rng.uniform(0, STEEPEST, count), rng.uniform(-math.pi, math.pi, count)
+    touches = _one_by_one(axial, angle, force, np.full(count, math.nan))
+    pulls = _one_by_one(force * part * np.cos(way), force * part * np.sin(way), force, np.full(count, math.nan))
+    Z = np.zeros((len(touches.force_n), *device.geometry.shape))
+    for k in np.flatnonzero(touches.force_n > 0):
+        shear = float(pulls.axial_mm[k]), float(pulls.angle_rad[k])
+        place = {"axial_mm": float(touches.axial_mm[k]), "angle_rad": float(touches.angle_rad[k])}
+        Z[k] = device.skin.pressed(float(touches.force_n[k]), **place, shear_n=shear)
+    stream = truth_stream(device, RATE_HZ)
+    stream = replace(stream, channels=(*stream.channels, *(Channel(name, "N", "truth") for name in ("along_n", "around_n"))))
+    truth = [touches.axial_mm, np.degrees(touches.angle_rad), touches.force_n, touches.line_rad, pulls.axial_mm, pulls.angle_rad]
+    volts = device.volts(Z, rng).reshape(len(Z), -1)
+    return Recording.of_values(stream, np.column_stack([volts, *truth]), device_time=np.arange(len(Z)) / RATE_HZ)
 
 
 def rods(device: Device, count: int, *, seed: int = 0) -> Recording:

@@ -9,21 +9,28 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from skinfab.errors import InputError
+from skinfab.fingertip.array.force import angle_by_split
 from skinfab.fingertip.array.geometry import Geometry, wrapped
+from skinfab.fingertip.array.interpolate import SINC, on_grid
+from skinfab.fingertip.array.layer import LayerDevice
+from skinfab.fingertip.array.learn import learn
 from skinfab.fingertip.array.line_fit import LineFinder
+from skinfab.fingertip.array.logs import of_recording
 from skinfab.fingertip.array.matched import ArrayModel, Matcher
 from skinfab.fingertip.array.orientation import Orientation, SpanFinder, combined, folded
 from skinfab.fingertip.array.parabola import log_parabola
 from skinfab.fingertip.array.peak import PeakFinder
-from skinfab.fingertip.array.protocols import PRESS_N, ROD_N, twirl
+from skinfab.fingertip.array.protocols import FRAMES, PRESS_N, ROD_N, presses, pushes, twirl
 from skinfab.fingertip.array.simulator import Device
+from skinfab.fingertip.array.spot_fit import SpotFinder
 from skinfab.fingertip.array.tracking import KINDS, Place, Tracker, centre_of_pressure, matched_events
 
 FloatArray = NDArray[np.float64]
 
 #: The seed's steps: 0.25 mm along a stripe, 3 degrees around a ring.
 ALONG_MM, AROUND_DEG = 0.25, 3.0
-PUBLISHED, IMPROVED = "sinc", "matched"
+PUBLISHED, IMPROVED, SPLIT = "sinc", "matched", "odd and even"
 #: Directions of the rod, degrees.
 LINES_DEG = tuple(range(0, 91, 10))
 
@@ -157,6 +164,69 @@ def rods_on(device: Device, count: int, *, seed: int = 0, between: bool = False,
     return Rods(directions, device.noisy(np.array(Z), rng))
 
 
+def tilts(devices: Sequence[Device], count: int, *, seed: int = 0) -> dict[str, FloatArray]:
+    """Errors of a force's angle from the normal, degrees, (n, 2) along and around, by each way; NaN where a way finds none.
+
+    The published way splits the profile of the sinc through its peak into its odd and even parts.
+    """
+    found: dict[str, list[tuple[float, float]]] = {SPLIT: [], IMPROVED: []}
+    true: list[tuple[float, float]] = []
+    for device in devices:
+        recording = pushes(device, count, seed=seed + device.seed)
+        log, names = of_recording(recording, name="pushes"), recording.stream.names
+        normal, along, around = (recording.values[:, names.index(name)] for name in ("force_n", "along_n", "around_n"))
+        model = ArrayModel.nominal(device.geometry)
+        spots, finder = SpotFinder(model), Matcher(model)
+        for k in log.touched()[::FRAMES]:
+            true.append((math.atan2(along[k], normal[k]), math.atan2(around[k], normal[k])))
+            x, s, force, *_ = finder.one(log.Z[k])
+            found[IMPROVED].append(spots.push(log.Z[k], (x, s / device.geometry.core_radius, force)).tilt_rad)
+            found[SPLIT].append(_split_angles(log.Z[k], model))
+    return {name: np.degrees(np.array(each) - np.array(true)) for name, each in found.items()}
+
+
+def _split_angles(Z: FloatArray, model: ArrayModel) -> tuple[float, float]:
+    """The angle of a force along and around by the odd and even parts of the sinc's profiles, rad."""
+    g, nu = model.geometry, model.rubber.poisson
+    x, y, *_ = PeakFinder(g).tactels(Z)
+
+    def kernel(at: FloatArray, P: float, Q: float) -> FloatArray:
+        R = np.sqrt(at * at + g.skin**2)
+        out: FloatArray = (P * g.skin + Q * at) * (3 * g.skin**2 / R**5 - 2 * nu / R**3)
+        return out
+
+    out = []
+    for axis in (0, 1):
+
+        def profile(at: FloatArray, axis: int = axis) -> FloatArray:
+            along, around = (np.atleast_1d(value) for value in ((x + at / g.ring_pitch, y) if axis == 0 else (x, y + at / g.stripe_pitch)))
+            return on_grid(Z, SINC, along, around).ravel()
+
+        try:
+            out.append(angle_by_split(profile, 0.0, kernel, g.skin))
+        except InputError:
+            out.append(math.nan)
+    return out[0], out[1]
+
+
+def on_a_layer(seeds: Sequence[int]) -> dict[str, dict[str, FloatArray]]:
+    """Errors along (mm) and around (degrees) on arrays under another field than the matched ways know, by each way.
+
+    ``learned`` is the matched way with a model learned from two logs of 40 presses on the same array.
+    """
+    out: dict[str, dict[str, list[FloatArray]]] = {"along": {}, "around": {}}
+    for seed in seeds:
+        device = LayerDevice(seed=seed)
+        logs = [of_recording(presses(device, 40, seed=10 * seed + k), name=str(k)) for k in (0, 1)]
+        ways = locators(device.geometry)
+        ways["learned"] = locators(device.geometry, learn(logs, device.geometry).model)[IMPROVED]
+        for axis, by in out.items():
+            one = scan(device, axis, seed=seed)
+            for name, locate in ways.items():
+                by.setdefault(name, []).append(one.errors(locate))
+    return {axis: {name: np.concatenate(each) for name, each in by.items()} for axis, by in out.items()}
+
+
 def three_fingers(devices: Sequence[Device], count: int, *, seed: int = 0) -> dict[str, FloatArray]:
     """Errors, degrees, of the direction that three fingers tell together, by each way."""
     each = [rods_on(device, count, seed=10 * seed + k) for k, device in enumerate(devices)]
@@ -207,8 +277,6 @@ class Counted:
 
 def twirls(seeds: Sequence[int], *, published: bool, device: Device | None = None) -> dict[str, Counted]:
     """Events found in the seed's twirling, one log a seed, by kind."""
-    from skinfab.fingertip.array.logs import of_recording
-
     counts = {kind: [0, 0, 0] for kind in KINDS}
     for seed in seeds:
         own = Device(seed=seed) if device is None else Device(device.geometry, device.rubber, device.errors, seed)

@@ -9,13 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skinfab.errors import InputError
-from skinfab.fingertip.array.geometry import tactel_columns
+from skinfab.fingertip.array.geometry import Geometry, tactel_columns
 from skinfab.fingertip.array.line_fit import Line, LineFinder
 from skinfab.fingertip.array.logs import PULLED_PART, REST_S, of_recording, require_rested, tactels
 from skinfab.fingertip.array.matched import ArrayModel, Contact, Matcher
 from skinfab.fingertip.array.peak import Peak, PeakFinder, highest
 from skinfab.fingertip.array.rest import Rest
-from skinfab.fingertip.array.simulator import deflection
+from skinfab.fingertip.array.simulator import Skin, deflection
 from skinfab.fingertip.array.spot_fit import Spot, SpotFinder
 from skinfab.fingertip.array.tracking import LIFT_PART, TOUCH_N, Event, Place, Tracker
 from skinfab.readout.frame import Frame, Recording, Stream
@@ -258,6 +258,19 @@ class ArrayWatch:
         events = self._analyser.finish() if self._analyser is not None else ()
         self._analyser, self._resting = None, []
         return events
+
+
+def warm_up() -> None:
+    """Load all compiled code, so that the first touch does not wait for it."""
+    seed = Geometry()
+    read, skin = Analyser(ArrayModel.nominal(seed), noise=2e-4), Skin(seed)
+    both = skin.points([(1.0, 0.0, 0.0)] * 2, [(5.0, 0.0), (18.0, 1.2)])
+    for Z in (
+        both,
+        skin.plated(4.0, axial_mm=13.0, angle_rad=0.0, size_mm=18.0),
+        skin.lined(2.0, axial_mm=13.0, angle_rad=0.0, line_rad=1.0),
+    ):
+        read.frame(0.0, Z)
 
 
 def read_all(recording: Recording, model: ArrayModel) -> tuple[tuple[Reading, ...], ArrayWatch]:

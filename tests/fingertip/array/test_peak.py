@@ -80,3 +80,15 @@ def test_log_parabola() -> None:
     Z = SKIN.pressed(0.5, axial_mm=13.0, angle_rad=0.3)
     x, y = log_parabola(Z)
     assert SEED.from_tactels(x, y) == pytest.approx((13.0, 0.3), abs=0.1)
+
+
+def test_a_summit_that_is_missing_is_no_peak() -> None:
+    """The tactel under the contact is at the end of its range: a hole there moved the peak by 2.6 mm, and was told as one."""
+    Z = SKIN.pressed(2.0, axial_mm=12.0, angle_rad=0.1)
+    assert FIND(Z).state == "peak"
+    Z[3, 0] = np.nan
+    peak = FIND(Z)
+    assert peak.state == "flat" and abs(peak.axial_mm - 12.0) < 1.2
+    far = SKIN.pressed(2.0, axial_mm=12.0, angle_rad=0.1)
+    far[6, 4] = np.nan
+    assert FIND(far).state == "peak"
