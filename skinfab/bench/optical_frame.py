@@ -34,7 +34,7 @@ COUNTS, JUDGED, TIMED, REACH_MM = (100, 300, 1000), 300, 60, 5.0
 PUBLISHED, LINEAR, WHOLE, DEFAULT = "published moments", "pins, ridge", "image, kernel ridge", "pins, kernel ridge"
 #: The seed's frame, on a core of 3 GHz, ms.
 SEED_MS = (16.0, 30.0)
-#: Ridge of the linear way in parts of the pins' mean square (the best of 0.001 to 0.3 on other images); pixels a side of the shrunken image.
+#: Ridge of the linear way in parts of the pins' mean square (best of 0.001 to 0.3 on other images); pixels a side of the shrunken image.
 _RIDGE, _SMALL = 0.3, 40
 
 
