@@ -103,6 +103,12 @@ def add_cut_options(p: argparse.ArgumentParser) -> None:
     )
     p.add_argument("--cuts", metavar="FILE", type=Path, help="seams by hand: a text file of vertex paths (see docs/cuts.md); just these")
     p.add_argument("--complete", action="store_true", help="with --cuts: add automatic seams where those do not give good pieces")
+    p.add_argument(
+        "--pieces",
+        choices=("fewest", "usual"),
+        default="usual",
+        help="of automatic seams: as few pieces, with as little seam, as the bound allows, or simple ones well within it (default: usual)",
+    )
     p.add_argument("--max-distortion", type=bound, metavar="D", help="mean d of a piece at most (default 4.05; 4 is perfect)")
     p.add_argument("--printer", metavar="NAME|FILE", help="printer profile, whose bed the pieces must fit")
     p.add_argument("--material", metavar="NAME|FILE.toml", help="material profile: ink, silicone, mould (see skinfab strips)")
@@ -129,6 +135,8 @@ def require_fitting_options(args: argparse.Namespace) -> None:
     """Options that do not go together are wrong usage."""
     if args.complete and args.cuts is None:
         args.wrong_usage("--complete goes with --cuts FILE")
+    if args.pieces != "usual" and args.cuts is not None:
+        args.wrong_usage("--pieces is for automatic seams, and --cuts gives them by hand; give one of them")
     if args.wrap is not None and args.cuts is not None:
         args.wrong_usage("--cuts names vertices of the mesh file, and --wrap makes a surface of its own; give one of them")
     if args.mesh.suffix.lower() != ".skin":
@@ -226,7 +234,9 @@ def cut(args: argparse.Namespace, loaded: Loaded, mesh: Mesh, used: Used, progre
     within = limits(bound_of(args), used)
     if args.cuts is not None:
         return _by_hand(args, loaded, mesh, within)
-    return find_seams(mesh, within, neck=used.material.neck, progress=lambda done: progress(done, "cutting and flattening"))
+    return find_seams(
+        mesh, within, neck=used.material.neck, aim=args.pieces, progress=lambda done: progress(done, "cutting and flattening")
+    )
 
 
 def _by_hand(args: argparse.Namespace, loaded: Loaded, mesh: Mesh, within: Limits) -> Seams:

@@ -175,6 +175,12 @@ class IsometricSolver:
         self._hold(data)
         return csc_array((data, self._indices, self._indptr), shape=(2 * self.n, 2 * self.n)), gradient
 
+    def factored(self, UV: FloatArray, apart: Apart | None = None) -> Cholesky:
+        """The factor of the Hessian at a layout without flips, with the barrier's where there is one; the next refinement ends it."""
+        self._step(np.ascontiguousarray(UV), apart, renew=True)
+        assert self._cholesky is not None
+        return self._cholesky
+
     def descend(self, UV: FloatArray, step: FloatArray, slope: float) -> tuple[FloatArray, float]:
         """`UV` as far along `step` (n, 2) as d falls by its share of `slope` and nothing flips, and the mean d there."""
         _, u, energy = self._line_search(UV, step, slope, self._energy(UV, None), None)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +18,7 @@ from skinfab.mesh.model import Mesh
 from skinfab.seams.coarse import coarsen, transfer
 from skinfab.seams.creases import borders, crease_seams, merge_small
 from skinfab.seams.cut import seam_length
+from skinfab.seams.fewest import fewest_seams
 from skinfab.seams.glue import glue_pieces
 from skinfab.seams.judge import Limits
 from skinfab.seams.refine import Judged, refine_seams
@@ -24,6 +26,9 @@ from skinfab.seams.rules import EdgeRules, coarse_rules
 from skinfab.seams.weights import seam_weights
 
 BoolArray = NDArray[np.bool_]
+
+#: What automatic seams are to give, see `find_seams`.
+Aim = Literal["fewest", "usual"]
 
 #: Seams are searched on about this many triangles.
 _COARSE_FACES = 6000
@@ -69,6 +74,7 @@ def find_seams(
     *,
     neck: float = 4.0,
     rules: EdgeRules | None = None,
+    aim: Aim = "usual",
     progress: Callable[[float], None] | None = None,
 ) -> Seams:
     """Seams that part `mesh` into disks within `limits`, without flips or overlap.
@@ -82,6 +88,9 @@ def find_seams(
         Pieces are not joined across less than this.
     rules : EdgeRules, optional
         Seams to keep, edges never to cut, and what others cost.
+    aim : "fewest" or "usual"
+        As few pieces and as little seam as the bound allows, with darts wherever they gain most (`fewest_seams`); or
+        simple pieces well within the bound, parted on creases where there are any.
     progress : callable, optional
         Called with the part that is done, 0 to 1.
 
@@ -90,14 +99,16 @@ def find_seams(
     Seams
         Flattened as far as it takes to accept them; `finish.finish` drives d to its least.
     """
-    aim = replace(limits, mean=4 + _AIM * (limits.mean - 4))
+    if aim == "fewest":
+        return Seams(*fewest_seams(mesh, limits, neck=neck, rules=rules, progress=progress))
+    inner = replace(limits, mean=4 + _AIM * (limits.mean - 4))
     small = coarsen(mesh, _COARSE_FACES)
     report = progress or (lambda done: None)
     if small is mesh:
-        return _search(mesh, aim, limits, neck, rules, report)
+        return _search(mesh, inner, limits, neck, rules, report)
     locked = None if rules is None else transfer(mesh, rules.locked, small)
     small_rules = None if rules is None or locked is None else coarse_rules(mesh, rules, small, locked)
-    seams = _search(small, aim, limits, neck, small_rules, lambda done: report(0.5 * done))
+    seams = _search(small, inner, limits, neck, small_rules, lambda done: report(0.5 * done))
     cut = _on_fine(mesh, small, seams.cut, rules, locked)
     fine = {"tolerance": _SEARCH_DECREASE}
     weight, forbidden = (seam_weights(mesh), None) if rules is None else (rules.weights(mesh), rules.forbidden)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -10,11 +12,26 @@ from skinfab.mesh.model import Mesh
 from skinfab.seams.cut import OpenPiece, mesh_edges
 from skinfab.seams.graph import edge_graph, shortest_tree, trace
 
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
 #: A single needle triangle must not draw every dart to itself.
 _WORST_D = 50.0
 
 
-def grow_dart(mesh: Mesh, piece: OpenPiece, d: NDArray[np.float64], weight: NDArray[np.float64]) -> NDArray[np.int64]:
+@dataclass(frozen=True, eq=False)
+class _Outlook:
+    """What a dart to each vertex of a piece would meet; `before` leads from there to the boundary."""
+
+    on_boundary: NDArray[np.bool_]
+    before: IntArray
+    distance: FloatArray
+    excess: FloatArray
+    curvature: FloatArray
+    size: float
+
+
+def grow_dart(mesh: Mesh, piece: OpenPiece, d: FloatArray, weight: FloatArray) -> IntArray:
     """Mesh edges of a dart from the most distorted vertex to the boundary.
 
     The worst vertex weighs the excess of d about it, its distance to the boundary (a dart from a vertex beside
@@ -35,11 +52,56 @@ def grow_dart(mesh: Mesh, piece: OpenPiece, d: NDArray[np.float64], weight: NDAr
     (j,) int64
         None when no vertex lies inside the piece.
     """
+    seen = _look(mesh, piece, d, weight)
+    if seen is None:
+        return np.zeros(0, dtype=np.int64)
+    path = trace(seen.before, int(np.argmax(_worst(seen))))
+    return mesh_edges(mesh, piece, piece.topology.edge_ids(path))
+
+
+def dart_paths(mesh: Mesh, piece: OpenPiece, d: FloatArray, weight: FloatArray, *, count: int, apart: float) -> list[IntArray]:
+    """Up to `count` ways for a dart, each from the boundary to another bad spot of a piece.
+
+    In turn by excess, curvature and distance as in `grow_dart`; by excess alone; by excess and distance.
+
+    Parameters
+    ----------
+    mesh, piece, d, weight
+        As for `grow_dart`.
+    count : int
+    apart : float, mm
+        No two of the spots are nearer to each other.
+
+    Returns
+    -------
+    list of (k,) int64
+        Vertices of the piece, the first on its boundary and no other.
+    """
+    seen = _look(mesh, piece, d, weight)
+    if seen is None:
+        return []
+    scores = [_worst(seen), *(np.where(seen.on_boundary, -np.inf, s) for s in (seen.excess, seen.excess * seen.distance))]
+    at = mesh.V[piece.vertices]
+    paths = []
+    for k in range(count):
+        tip = int(np.argmax(scores[k % 3]))
+        if not np.isfinite(scores[k % 3][tip]):
+            break
+        near = np.linalg.norm(at - at[tip], axis=1) < apart
+        near[tip] = True
+        for score in scores:
+            score[near] = -np.inf
+        pairs = trace(seen.before, tip)
+        paths.append(np.r_[pairs[::-1, 1], tip])
+    return paths
+
+
+def _look(mesh: Mesh, piece: OpenPiece, d: FloatArray, weight: FloatArray) -> _Outlook | None:
     topology, n = piece.topology, len(piece.vertices)
     on_boundary = np.zeros(n, dtype=bool)
     on_boundary[topology.boundary_loops[0]] = True
     if on_boundary.all():
-        return np.zeros(0, dtype=np.int64)
+        return None
     edge_weight = weight[mesh_edges(mesh, piece, np.arange(len(topology.E)))]
     distance, before = shortest_tree(edge_graph(topology, edge_weight, n), np.flatnonzero(on_boundary))
     area = mesh.face_areas[piece.faces]
@@ -47,7 +109,9 @@ def grow_dart(mesh: Mesh, piece: OpenPiece, d: NDArray[np.float64], weight: NDAr
     around = np.maximum(np.bincount(corner, np.repeat(area, 3), n), np.finfo(float).tiny)
     excess = np.bincount(corner, np.repeat((np.minimum(d, _WORST_D) - 4) * area, 3), n) / around
     curvature = np.abs(2 * np.pi - intrinsic(mesh.V[piece.vertices], piece.F).angle_sum)
-    reach = np.minimum(distance / np.sqrt(area.sum()), 0.5)
-    score = np.where(on_boundary, -np.inf, excess * reach * (1 + 4 * curvature))
-    path = trace(before, int(np.argmax(score)))
-    return mesh_edges(mesh, piece, topology.edge_ids(path))
+    return _Outlook(on_boundary, before, distance, excess, curvature, float(np.sqrt(area.sum())))
+
+
+def _worst(seen: _Outlook) -> FloatArray:
+    reach = np.minimum(seen.distance / seen.size, 0.5)
+    return np.where(seen.on_boundary, -np.inf, seen.excess * reach * (1 + 4 * seen.curvature))

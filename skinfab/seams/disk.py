@@ -47,7 +47,7 @@ def cut_to_disk(topology: Topology, weight: FloatArray, n_vertices: int, *, star
     boundary = np.unique(topology.E[topology.is_boundary])
     if len(boundary):
         return _tree_cotree(topology, weight, shortest_tree(graph, boundary))
-    sources = _far_points(graph, 4) if start is None else np.array([start])
+    sources = far_points(graph, 4) if start is None else np.array([start])
     if topology.euler == 2:
         distance, before = shortest_tree(graph, sources[:1])
         slit = topology.edge_ids(trace(before, int(np.argmax(distance))))
@@ -113,7 +113,7 @@ def _prune(topology: Topology, cut: IntArray) -> IntArray:
     return np.array(sorted(kept), dtype=np.int64)
 
 
-def _far_points(graph: csr_array, count: int) -> IntArray:
+def far_points(graph: csr_array, count: int) -> IntArray:
     """Points far from each other, the first two about a diameter apart."""
     points = [int(np.argmax(shortest_tree(graph, np.array([0]))[0]))]
     while len(points) < count:

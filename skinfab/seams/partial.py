@@ -15,7 +15,7 @@ from skinfab.placement.carry import carry, put_back
 from skinfab.placement.lifted import Lifted, in_line
 from skinfab.placement.sensor import Sensor
 from skinfab.progress import Progress, silent
-from skinfab.seams.auto import find_seams
+from skinfab.seams.auto import Aim, find_seams
 from skinfab.seams.cut import OpenPiece, open_pieces
 from skinfab.seams.finish import finish
 from skinfab.seams.judge import Limits
@@ -149,6 +149,7 @@ def auto_cut(
     *,
     neck: float = 4.0,
     material: Material | None = None,
+    aim: Aim = "usual",
     progress: Progress = silent,
 ) -> Reopened:
     """Automatic seams in place of the skin's own: locked ones stay, forbidden edges are left alone, preferences are heeded.
@@ -164,6 +165,8 @@ def auto_cut(
         Pieces are not joined across less than this.
     material : Material, optional
         Says whether sensors still fit.
+    aim : "fewest" or "usual"
+        See `find_seams`.
     progress : Progress, optional
 
     Raises
@@ -173,7 +176,7 @@ def auto_cut(
     """
     mesh = skin.mesh
     rules = None if skin.marks is None or skin.marks.empty else edge_rules(mesh, skin.marks)
-    found = find_seams(mesh, limits, neck=neck, rules=rules, progress=lambda part: progress(0.95 * part, "cutting and flattening"))
+    found = find_seams(mesh, limits, neck=neck, rules=rules, aim=aim, progress=lambda part: progress(0.95 * part, "cutting and flattening"))
     found = finish(mesh, found, limits)
     pieces = to_pieces(mesh, found.pieces)
     by_first_face = {int(piece.faces[0]): verdict.distortion for piece, verdict in found.pieces}

@@ -35,6 +35,22 @@ def test_automatic(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert said["pieces"][0]["distortion"]["mean"] == pytest.approx(4)
 
 
+def test_fewest_pieces(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Of the mesh, and of the document of it."""
+    target = str(tmp_path / "fewest.skin")
+    found = []
+    for source in (CUBE, target):
+        assert main(["segment", source, "-o", target, "--pieces", "fewest", "--max-distortion", "4.2", "--json"]) == 0
+        found.append(json.loads(capsys.readouterr().out))
+    assert len(found[0]["pieces"]) == 1 and found[0]["pieces"][0]["distortion"]["mean"] <= 4.2
+    assert found[1]["seam_mm"] == pytest.approx(found[0]["seam_mm"])
+
+
+def test_fewest_pieces_are_not_cut_by_hand(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["segment", CUBE, "-o", str(tmp_path / "cube.skin"), "--cuts", str(tmp_path / "cuts.txt"), "--pieces", "fewest"]) == 2
+    assert "--pieces is for automatic seams" in capsys.readouterr().err
+
+
 def test_by_hand_is_honoured_exactly(tmp_path: Path) -> None:
     (tmp_path / "cuts.txt").write_text(cube_net())
     assert main(["segment", CUBE, "-o", str(tmp_path / "cube.skin"), "--cuts", str(tmp_path / "cuts.txt")]) == 0

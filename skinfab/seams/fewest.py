@@ -1,0 +1,223 @@
+"""The fewest pieces, and little seam: a short slit, then dart after dart, and no more of them than the fine mesh needs.
+
+The darts are found on a mesh of some 1500 triangles, from a few starts. A finer mesh is bent less by each of its triangles
+and shows less d: there the first so many of the darts are taken that do.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from skinfab.mesh.model import Mesh
+from skinfab.seams.coarse import coarsen, transfer
+from skinfab.seams.cut import OpenPiece, mesh_edges, open_pieces
+from skinfab.seams.disk import cut_to_disk, far_points
+from skinfab.seams.graph import edge_graph, shortest_tree, trace
+from skinfab.seams.glue import glue_pieces
+from skinfab.seams.growth import Grown, grow_darts, laid_apart, lay_out
+from skinfab.seams.judge import Limits, judge
+from skinfab.seams.refine import Judged, refine_seams
+from skinfab.seams.rules import EdgeRules, coarse_rules
+from skinfab.seams.weights import seam_weights
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+BoolArray = NDArray[np.bool_]
+
+#: Darts are found on about this many triangles, ...
+_COARSE_FACES = 1500
+
+#: ... and tried on at most about this many.
+_MIDDLE_FACES = 8000
+
+#: Places of the first slit in a closed piece that are tried, far from each other.
+_STARTS = 3
+
+#: The first slit is this part of the root of the area long: just enough to lay the rest out.
+_SLIT = 0.25
+
+#: In the search a flattening need not be driven to the end: d is known to 1 % of what is above 4.
+_SEARCH_DECREASE = 1e-2
+
+
+@dataclass(frozen=True, eq=False)
+class _Level:
+    """One resolution of the surface, and what a person's marks mean on it."""
+
+    mesh: Mesh
+    weight: FloatArray
+    locked: BoolArray
+    forbidden: BoolArray
+
+
+@dataclass(frozen=True, eq=False)
+class _Plan:
+    """What was found for one part of the coarse surface: what opens it to a disk, and its darts."""
+
+    faces: IntArray
+    opening: IntArray
+    grown: Grown
+
+
+def fewest_seams(
+    mesh: Mesh,
+    limits: Limits,
+    *,
+    neck: float = 4.0,
+    rules: EdgeRules | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> tuple[BoolArray, list[Judged]]:
+    """Seams that leave as few pieces as can be, and are short: locked seams and components apart, mostly one.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        Manifold, consistently wound; closed or open, any genus, any number of components.
+    limits : Limits
+    neck : float, mm
+        Pieces are not joined across less than this.
+    rules : EdgeRules, optional
+    progress : callable, optional
+        Called with the part that is done, 0 to 1; what it raises ends the search.
+
+    Returns
+    -------
+    cut : (e,) bool
+    pieces : list of (OpenPiece, Verdict)
+
+    Raises
+    ------
+    InputError, RefusedError
+        As `refine_seams`, which has the last word.
+    """
+    report = progress or (lambda done: None)
+    fine = _level(mesh, mesh, rules)
+    small = fine if (few := coarsen(mesh, _COARSE_FACES)) is mesh else _level(mesh, few, rules)
+    middle = fine if (some := coarsen(mesh, _MIDDLE_FACES)) is mesh else _level(mesh, some, rules)
+    plans = _plans(small, limits.mean, lambda done: report(0.5 * done))
+    # A piece too large for the bed is parted in the end; more darts would not make it smaller.
+    flat = Limits(mean=limits.mean)
+    cut = _fewest_that_do(small, plans, middle, flat, lambda done: report(0.5 + 0.2 * done))
+    cut = _carried(middle, cut, fine)
+    forbidden, locked = (None, None) if rules is None else (rules.forbidden, rules.locked)
+    accuracy = {"tolerance": _SEARCH_DECREASE}
+    cut, pieces = refine_seams(
+        mesh, cut, limits, fine.weight, forbidden=forbidden, progress=lambda done: report(0.7 + 0.3 * done), **accuracy
+    )
+    return glue_pieces(mesh, cut, pieces, limits, neck=neck, excess=np.inf, locked=locked, **accuracy)
+
+
+def _level(mesh: Mesh, here: Mesh, rules: EdgeRules | None) -> _Level:
+    none = np.zeros(len(here.topology.E), dtype=bool)
+    if rules is None:
+        return _Level(here, seam_weights(here), none, none)
+    if here is not mesh:
+        rules = coarse_rules(mesh, rules, here, transfer(mesh, rules.locked, here))
+    return _Level(here, rules.weights(here), rules.locked, rules.forbidden)
+
+
+def _carried(one: _Level, cut: BoolArray, other: _Level) -> BoolArray:
+    """Seams of one level on another; the locked ones are known exactly, and those found beside them end on them."""
+    if one is other:
+        return cut
+    pinned = np.unique(one.mesh.topology.E[one.locked]), np.unique(other.mesh.topology.E[other.locked])
+    carried = transfer(one.mesh, cut & ~one.locked, other.mesh, weight=other.weight, pinned=pinned)
+    return (carried & ~other.forbidden) | other.locked
+
+
+def _plans(small: _Level, bound: float, report: Callable[[float], None]) -> list[_Plan]:
+    """For each part between the locked seams, the shortest of what is found from a few starts."""
+    mesh, plans, done = small.mesh, [], 0
+    for part in open_pieces(mesh, small.locked):
+        found: list[_Plan] = []
+        starts = _openings(small, part)
+        for k, opening in enumerate(starts):
+            report((done + k / len(starts) * len(part.faces)) / len(mesh.F))
+            cut = small.locked.copy()
+            cut[opening] = True
+            opened = open_pieces(mesh, cut, faces=part.faces)
+            if len(opened) != 1 or not opened[0].is_disk:
+                continue
+            grown = grow_darts(mesh, lay_out(mesh, opened[0]), bound, small.weight, cut=cut, forbidden=small.forbidden)
+            found.append(_Plan(part.faces, opening, grown))
+        done += len(part.faces)
+        if found:
+            plans.append(_shortest(small, found, bound))
+    return plans
+
+
+def _shortest(small: _Level, found: list[_Plan], bound: float) -> _Plan:
+    """The plan with the least seam; that one alone is laid out anew where it covers itself, which takes far longer."""
+    length = [plan.grown.length + float(small.mesh.edge_lengths[plan.opening].sum()) for plan in found]
+    plan = found[int(np.argmin(length))]
+    if plan.grown.good or plan.grown.mean > bound:
+        return plan
+    cut = small.locked.copy()
+    cut[plan.opening] = True
+    grown = grow_darts(small.mesh, laid_apart(small.mesh, plan.grown), bound, small.weight, cut=cut, forbidden=small.forbidden)
+    return _Plan(plan.faces, plan.opening, grown)
+
+
+def _openings(small: _Level, part: OpenPiece) -> list[IntArray]:
+    """Sets of edges each of which makes a disk of a part; for a closed one slits at points far from each other."""
+    if part.is_disk:
+        return [np.zeros(0, dtype=np.int64)]
+    topology = part.topology
+    weight = small.weight[mesh_edges(small.mesh, part, np.arange(len(topology.E)))]
+    if topology.euler != 2 or topology.is_boundary.any():
+        return [mesh_edges(small.mesh, part, cut_to_disk(topology, weight, len(part.vertices)))]
+    graph = edge_graph(topology, weight, len(part.vertices))
+    size = float(np.sqrt(small.mesh.face_areas[part.faces].sum()))
+    slits = []
+    for point in far_points(graph, _STARTS).tolist():
+        distance, before = shortest_tree(graph, np.array([point]))
+        way = mesh_edges(small.mesh, part, topology.edge_ids(trace(before, int(np.argmax(distance)))[::-1]))
+        count = int((np.cumsum(small.mesh.edge_lengths[way]) < _SLIT * size).sum())
+        slits.append(way[: max(count, 2)])  # one edge alone does not open
+    return slits
+
+
+def _fewest_that_do(small: _Level, plans: list[_Plan], middle: _Level, limits: Limits, report: Callable[[float], None]) -> BoolArray:
+    """Seams on `middle` with as many of each plan's darts as it needs, by bisection; all plans at a time."""
+    owner = np.full(len(small.mesh.F), -1)
+    for k, plan in enumerate(plans):
+        owner[plan.faces] = k
+    centres = cKDTree(small.mesh.V[small.mesh.F].mean(axis=1)) if middle is not small else None
+    low, high = np.zeros(len(plans), dtype=np.int64), np.array([len(plan.grown.darts) for plan in plans], dtype=np.int64)
+    rounds = max(int(high.max(initial=0)).bit_length(), 1)
+    for k in range(rounds):
+        report(k / rounds)
+        if (low >= high).all():
+            break
+        tried = (low + high) // 2
+        cut = _carried(small, _with_darts(small, plans, tried), middle)
+        does = np.ones(len(plans), dtype=bool)
+        for piece in open_pieces(middle.mesh, cut):
+            whose = _owner(middle, piece, owner, centres)
+            if low[whose] < high[whose] and does[whose]:
+                does[whose] = piece.is_disk and judge(middle.mesh, piece, limits, tolerance=_SEARCH_DECREASE).accepted
+        high = np.where(does, tried, high)
+        low = np.where(does, low, np.minimum(tried + 1, high))
+    return _carried(small, _with_darts(small, plans, high), middle)
+
+
+def _owner(middle: _Level, piece: OpenPiece, owner: IntArray, centres: cKDTree | None) -> int:
+    """The plan that most of a piece belongs to."""
+    if centres is None:
+        return int(owner[piece.faces[0]])
+    near = owner[centres.query(middle.mesh.V[middle.mesh.F[piece.faces]].mean(axis=1))[1]]
+    return int(np.bincount(near[near >= 0]).argmax()) if (near >= 0).any() else 0
+
+
+def _with_darts(small: _Level, plans: list[_Plan], counts: IntArray) -> BoolArray:
+    cut = small.locked.copy()
+    for plan, count in zip(plans, counts.tolist(), strict=True):
+        cut[plan.opening] = True
+        for dart in plan.grown.darts[:count]:
+            cut[dart.edges] = True
+    return cut

@@ -1,0 +1,222 @@
+"""Darts into one disk until it keeps to a bound, each where and as long as it gains the most for its length.
+
+A cut leaves the layout as it is, only free to do better: every layout is begun with the one before. Where a disk that
+keeps to the bound covers itself, it is laid out anew without overlap, and goes on with the boundary kept apart.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from skinfab.flatten.bijective import flatten_bijective, keep_apart
+from skinfab.flatten.disk import flatten_isometric
+from skinfab.flatten.distortion import measure
+from skinfab.flatten.isometric import Apart, IsometricSolver
+from skinfab.flatten.overlap import overlap_area
+from skinfab.mesh.model import Mesh
+from skinfab.seams.cut import OpenPiece, mesh_edges, open_pieces
+from skinfab.seams.darts import dart_paths
+from skinfab.seams.release import path_edges, releases, right_of
+from skinfab.tolerances import OVERLAP_FRACTION
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+BoolArray = NDArray[np.bool_]
+
+#: Spots that a dart is looked for at, no two nearer than this part of the root of the area; more where none will do.
+_CANDIDATES, _SPREAD = 8, 0.1
+_MORE = 9
+
+#: A dart is worth what it gains over its length to this power: under 1, so that one long dart may take the place of two.
+_LENGTH_POWER = 0.5
+
+#: Gain beyond what is wanted counts for nothing; what is foretold is not all had, so this much more is wanted.
+_WANTED = 1.25
+
+#: A piece with this many darts is better parted.
+_MOST_DARTS = 60
+
+#: In the search d is known to 1 % of what is above 4.
+_DECREASE = 1e-2
+
+#: Sides of a fresh cut begin this part of the barrier's reach off their place, each way; less where triangles are too thin.
+_GAPS = (0.25, 0.03, 0.004)
+
+
+@dataclass(frozen=True, eq=False)
+class Dart:
+    """A dart, and what it was cut for.
+
+    Parameters
+    ----------
+    edges : (k,) int64
+        Of the mesh.
+    mean : float
+        The piece's mean d before.
+    """
+
+    edges: IntArray
+    mean: float
+
+
+@dataclass(frozen=True, eq=False)
+class Grown:
+    """A disk with darts.
+
+    Parameters
+    ----------
+    darts : tuple of Dart
+        In the order that they were cut.
+    length : float, mm
+        Of all of them.
+    piece : OpenPiece
+    UV : (n, 2) float64, mm
+    mean : float
+        Its mean d.
+    apart : bool
+        Laid out with its boundary kept apart.
+    good : bool
+        It keeps to the bound, and does not cover itself.
+    """
+
+    darts: tuple[Dart, ...]
+    length: float
+    piece: OpenPiece
+    UV: FloatArray
+    mean: float
+    apart: bool
+    good: bool
+
+
+def lay_out(mesh: Mesh, piece: OpenPiece) -> Grown:
+    """A disk at its least d, without darts yet."""
+    V = mesh.V[piece.vertices]
+    uv = flatten_isometric(V, piece.F, topology=piece.topology, tolerance=_DECREASE)
+    return Grown((), 0.0, piece, uv, measure(V, piece.F, uv, topology=piece.topology).mean, False, False)
+
+
+def grow_darts(
+    mesh: Mesh,
+    start: Grown,
+    bound: float,
+    weight: FloatArray,
+    *,
+    cut: BoolArray,
+    forbidden: BoolArray,
+) -> Grown:
+    """Cut darts until the mean d is at most `bound`.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    start : Grown
+        Laid out freely: goes on so. Laid out apart: keeps its boundary apart.
+    bound : float
+    weight : (e,) float
+        Cost of cutting each mesh edge.
+    cut : (e,) bool
+        What bounds the disk without its darts.
+    forbidden : (e,) bool
+        Never cut.
+
+    Returns
+    -------
+    Grown
+        Not `good` where it still covers itself, or nothing helps any more.
+    """
+    now, cut = start, cut.copy()
+    for dart in start.darts:
+        cut[dart.edges] = True
+    solver = IsometricSolver(mesh.V[now.piece.vertices], now.piece.F)
+    while now.mean > bound and len(now.darts) < _MOST_DARTS:
+        path = _best_dart(mesh, now, solver, bound, weight, forbidden)
+        if path is None:
+            return now
+        edges = mesh_edges(mesh, now.piece, path_edges(now.piece.topology, path))
+        cut[edges] = True
+        parts = open_pieces(mesh, cut, faces=now.piece.faces)
+        if len(parts) != 1:  # the boundary touches itself there
+            return now
+        now, solver = _opened(mesh, now, parts[0], path, edges)
+    area = float(mesh.face_areas[now.piece.faces].sum())
+    flat = now.apart or overlap_area(now.piece.F, now.UV, topology=now.piece.topology) <= OVERLAP_FRACTION * area
+    return replace(now, good=bool(now.mean <= bound and flat))
+
+
+def laid_apart(mesh: Mesh, grown: Grown) -> Grown:
+    """The same piece at its least d without overlap."""
+    piece, V = grown.piece, mesh.V[grown.piece.vertices]
+    uv = flatten_bijective(V, piece.F, topology=piece.topology, tolerance=_DECREASE)
+    return replace(grown, UV=uv, mean=measure(V, piece.F, uv, topology=piece.topology).mean, apart=True)
+
+
+def _best_dart(mesh: Mesh, now: Grown, solver: IsometricSolver, bound: float, weight: FloatArray, forbidden: BoolArray) -> IntArray | None:
+    """Vertices of the piece from its boundary to the tip, or None where no dart gains anything."""
+    topology = now.piece.topology
+    d = _d_of(solver, now.UV)
+    size = float(np.sqrt(mesh.face_areas[now.piece.faces].sum()))
+    apart = keep_apart(mesh.V[now.piece.vertices], topology) if now.apart else None
+    wanted = _WANTED * (now.mean - bound)
+    for times in (1, _MORE):
+        paths = dart_paths(mesh, now.piece, d, weight, count=times * _CANDIDATES, apart=_SPREAD * size / np.sqrt(times))
+        best, found = 0.0, None
+        for path, gain in zip(paths, releases(solver, now.UV, topology, paths, apart=apart), strict=True):
+            edges = mesh_edges(mesh, now.piece, path_edges(topology, path))
+            worth = np.minimum(gain, wanted) / np.cumsum(mesh.edge_lengths[edges]) ** _LENGTH_POWER
+            worth[np.cumsum(forbidden[edges]) > 0] = 0.0
+            k = int(np.argmax(worth))
+            if worth[k] > best:
+                best, found = float(worth[k]), path[: k + 2]
+        if found is not None:
+            return found
+    return None
+
+
+def _opened(mesh: Mesh, now: Grown, piece: OpenPiece, path: IntArray, edges: IntArray) -> tuple[Grown, IsometricSolver]:
+    """The piece with a dart along `path` cut, laid out from where it was."""
+    V = mesh.V[piece.vertices]
+    solver = IsometricSolver(V, piece.F)
+    uv = np.empty((len(V), 2))
+    uv[piece.F.ravel()] = now.UV[now.piece.F.ravel()]
+    if now.apart:
+        apart = keep_apart(V, piece.topology)
+        parted = _parted(solver, piece, uv, now, path, apart)
+        if parted is None:
+            uv = flatten_bijective(V, piece.F, topology=piece.topology, tolerance=_DECREASE)
+        else:
+            uv = solver.refine(parted, tolerance=_DECREASE, apart=apart).UV
+    else:
+        uv = solver.refine(uv, tolerance=_DECREASE).UV
+    mean = float((_d_of(solver, uv) * solver.weight).sum())
+    dart, length = Dart(edges, now.mean), float(mesh.edge_lengths[edges].sum())
+    return Grown((*now.darts, dart), now.length + length, piece, uv, mean, now.apart, False), solver
+
+
+def _parted(solver: IsometricSolver, piece: OpenPiece, uv: FloatArray, now: Grown, path: IntArray, apart: Apart) -> FloatArray | None:
+    """The sides of a fresh cut a little off each other, as a barrier cannot part what touches; None where there is no room."""
+    place = np.full(len(now.UV), -1)
+    place[path[:-1]] = np.arange(len(path) - 1)
+    right = np.zeros(len(piece.F), dtype=bool)
+    old = now.piece.topology
+    right[right_of(path, path_edges(old, path), old.F, old.FE, old.EF)] = True
+    corners = np.flatnonzero(place[now.piece.F.ravel()] >= 0)
+    along = np.gradient(now.UV[path], axis=0)
+    left = np.stack([-along[:, 1], along[:, 0]], axis=1) / np.maximum(np.linalg.norm(along, axis=1), np.finfo(float).tiny)[:, None]
+    off = np.zeros_like(uv)
+    off[piece.F.ravel()[corners]] = left[place[now.piece.F.ravel()[corners]]] * np.where(right[corners // 3], -1.0, 1.0)[:, None]
+    for share in _GAPS:
+        moved = uv + share * apart.reach * off
+        if solver.best_scale(moved)[1] > 0 and overlap_area(piece.F, moved, topology=piece.topology) == 0:
+            return moved
+    return None
+
+
+def _d_of(solver: IsometricSolver, UV: FloatArray) -> FloatArray:
+    """(m,) d of each triangle."""
+    J = np.einsum("fkc,fkd->fcd", UV[solver.F], solver.gradients)
+    square, det = (J**2).sum(axis=(1, 2)), J[:, 0, 0] * J[:, 1, 1] - J[:, 0, 1] * J[:, 1, 0]
+    d: FloatArray = square + square / det**2
+    return d
