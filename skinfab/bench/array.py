@@ -95,6 +95,7 @@ class Tracked:
     true: int
     right: int
     found: int
+    off_mm: float
     simulated: bool = True
 
 
@@ -188,7 +189,7 @@ def least_us(work: Callable[[NDArray[np.float64]], object], Z: NDArray[np.float6
 def track(logs: int = TWIRLS) -> list[Tracked]:
     """A row for every way and kind of event."""
     return [
-        Tracked("matched line" if not published else "centre of pressure", kind, each.true, each.right, each.found)
+        Tracked("matched line" if not published else "centre of pressure", kind, each.true, each.right, each.found, each.off_mm)
         for published in (True, False)
         for kind, each in twirls(range(1000, 1000 + logs), published=published).items()
     ]
@@ -201,7 +202,7 @@ def pick(table: Sequence[Mapping[str, Any]], experiment: str, density: str, meth
 
 def sentence(table: Sequence[Mapping[str, Any]], twirl: Sequence[Mapping[str, Any]]) -> str:
     """Published beside improved, and what density gives: every number in it comes from the tables."""
-    first, last = table[0]["density"], table[-1]["density"]
+    first, *_, last = [row["density"] for row in table if not row["experiment"].startswith("layer")]
     said = []
     for experiment, words, published in (
         ("along", "mm along", PUBLISHED),
@@ -224,7 +225,11 @@ def sentence(table: Sequence[Mapping[str, Any]], twirl: Sequence[Mapping[str, An
     events = "; ".join(
         f"{name} finds {row['right']} of {row['true']} slips and {row['found'] - row['right']} that are none" for name, row in slips.items()
     )
+    tilt = " and ".join(f"{pick(table, f'tilt {axis}', first, IMPROVED)['rms']:.2g} {axis}" for axis in ("along", "around"))
+    field = [pick(table, f"layer {axis}", first, IMPROVED)["worst"] for axis in ("along", "around")]
     return (
         f"On {first} simulated tactels, {'; '.join(said)}; {last} tactels leave the published way {denser['worst']:.2g} degrees of "
-        f"direction; in twirling {events}. The default is {IMPROVED}, because aliasing, not noise, is what the others err by."
+        f"direction; a force's angle is off by {tilt} degrees rms; on another field than its own matched errs by "
+        f"{field[0]:.2g} mm and {field[1]:.2g} degrees at worst; in twirling {events}. "
+        f"The default is {IMPROVED}, because aliasing, not noise, is what the others err by."
     )

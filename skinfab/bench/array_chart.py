@@ -93,7 +93,7 @@ def draw_seed(path: Path, *, rods: int = 12) -> None:
         label = f"{name}: worst {np.abs(errors).max():.2g} degrees"
         axes.plot(laid.line_deg + k - 0.5, laid.line_deg + errors, "os"[k], ms=3, color=_COLOURS[name], label=label)
     axes.plot([0, 90], [0, 90], color="#777777", lw=0.8, ls=":")
-    axes.set(xlabel="direction of the rod from across the finger, degrees", ylabel="found, degrees")
+    axes.set(xlabel="direction of the rod, degrees", ylabel="found, degrees")
     axes.legend(fontsize=7, title="between two stripes", title_fontsize=7, loc="upper left")
     for axes in panels:
         axes.grid(True, lw=0.3, alpha=0.6)

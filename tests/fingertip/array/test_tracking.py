@@ -77,4 +77,5 @@ def test_twirling_as_the_seed_did() -> None:
     ours, published = twirls(range(4), published=False), twirls(range(4), published=True)
     for kind, each in ours.items():
         assert each.true > 0 and each.right == each.true == each.found, kind
+        assert each.off_mm < 0.7  # of a roll of 5 to 15 mm
     assert published["slip"].found > published["slip"].true  # aliasing makes it jump while it rolls
