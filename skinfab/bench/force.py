@@ -69,30 +69,35 @@ class Row:
 
 
 def run(folder: Path, *, repeats: int = REPEATS, progress: Progress = silent) -> dict[str, Any]:
-    """Measure, and write force.csv, force.png, force_events.csv, force_ablation.csv and force.txt into `folder`, which is there already.
+    """Measure, and write force.csv, force_events.csv, force_ablation.csv, force_touches.csv, force.png and force.txt into `folder`.
 
     Returns
     -------
     dict
-        "sentence", "notes" (what to know of the measurement), "rows" and "events".
+        "sentence", "notes" (what to know of the measurement), "rows", "events" and "touches".
     """
     from skinfab.bench.force_ablation import motions_without
     from skinfab.bench.force_chart import draw
+    from skinfab.bench.force_touch import SENSORS
+    from skinfab.bench.force_touch import measure as judge_touches
     from skinfab.files import atomic_write
 
-    notes = [f"simulated: {CONTACTS} rolling contacts with the sensor's noise, {GRASPS} grasps with its offset too"]
+    notes = [
+        f"simulated: {CONTACTS} rolling contacts with the sensor's noise, {GRASPS} grasps with its offset too, {SENSORS} sensors to touch"
+    ]
     with one_processor() as alone:
         notes += [] if alone else ["this system cannot keep a process on one processor"]
         rows = measure(repeats=repeats, progress=progress)
     write_csv(rows, folder / "force.csv")
-    events = judge_events(progress=lambda done, what: progress(0.5 + 0.4 * done, what))
+    events = judge_events(progress=lambda done, what: progress(0.5 + 0.3 * done, what))
     write_csv(events, folder / "force_events.csv")
-    write_csv(motions_without(progress=lambda done, what: progress(0.9 + 0.1 * done, what)), folder / "force_ablation.csv")
-    table, judged = read_csv(folder / "force.csv"), read_csv(folder / "force_events.csv")
+    write_csv(motions_without(progress=lambda done, what: progress(0.8 + 0.1 * done, what)), folder / "force_ablation.csv")
+    write_csv(judge_touches(progress=lambda done, what: progress(0.9 + 0.1 * done, what)), folder / "force_touches.csv")
+    table, judged, touched = (read_csv(folder / f"force{name}.csv") for name in ("", "_events", "_touches"))
     said = sentence(table, judged)
     atomic_write(folder / "force.txt", "\n".join([said, *notes]) + "\n")
     draw(table, judged, folder / "force.png")
-    return {"sentence": said, "notes": notes, "rows": table, "events": judged}
+    return {"sentence": said, "notes": notes, "rows": table, "events": judged, "touches": touched}
 
 
 def measure(*, contacts: int = CONTACTS, repeats: int = REPEATS, progress: Progress = silent) -> list[Row]:

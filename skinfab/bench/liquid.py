@@ -29,7 +29,8 @@ CONDITIONS = {
     "still": CupScene(),
     "sensor drifts": CupScene(drift_nmm_s=5.0),
     "hand trembles a little": CupScene(tremble_mm_s2=50.0),
-    "hand trembles": CupScene(tremble_mm_s2=200.0),
+    "hand trembles": CupScene(tremble_mm_s2=100.0),
+    "hand trembles much": CupScene(tremble_mm_s2=200.0),
 }
 WATER_G, ANGLES_DEG = (2, 5, 10, 20, 50, 100), (3.0, 10.0)
 #: Cups for each amount, angle and condition; empty ones that are judged, that wandering is limited by, and a minute each to learn from.
@@ -53,6 +54,8 @@ class Row:
     Parameters
     ----------
     condition, rule : str
+    tremble_mm_s2 : float, mm/s2
+        Root mean square of the hand's acceleration.
     grams : float
         Of water; 0: what is found is a false alarm.
     angle_deg : float
@@ -66,6 +69,7 @@ class Row:
 
     condition: str
     rule: str
+    tremble_mm_s2: float
     grams: float
     angle_deg: float
     found: float
@@ -139,7 +143,7 @@ def measure(
             ]
             for rule, found in _found(logs, wander, model).items():
                 rate = wilson(found, count)
-                rows.append(Row(name, rule, grams, angle, rate.value, rate.low, rate.high, count, cost))
+                rows.append(Row(name, rule, scene.tremble_mm_s2, grams, angle, rate.value, rate.low, rate.high, count, cost))
     return rows
 
 
@@ -173,12 +177,13 @@ def without(*, cups: int = 60, progress: Progress = silent) -> list[TermRow]:
 def sentence(table: Sequence[Mapping[str, Any]]) -> str:
     """What is found and how often wrongly: every number comes from the table."""
     by = {(row["condition"], row["rule"], row["grams"], row["angle_deg"]): row["found"] for row in table}
-    shaky = list(CONDITIONS)[-1]
+    shaky = table[-1]["condition"]
+    tremble = table[-1]["tremble_mm_s2"] / 1000
     return (
         f"Liquids, simulated: at a stated {FALSE_ALARM:.0%}, {by['still', 'spectrum', 0, 0.0]:.1%} of the empty cups of a still hand are "
         f"taken for full ones, and 10 g that swing by 10 degrees are found in {by['still', 'spectrum', 10, 10.0]:.0%} (by how far the "
         f"lines wander {by['still', 'wander', 10, 10.0]:.0%}), 20 g by 3 degrees in {by['still', 'spectrum', 20, 3.0]:.0%} "
-        f"({by['still', 'wander', 20, 3.0]:.0%}); where the hand trembles {by[shaky, 'spectrum', 0, 0.0]:.0%} of the empty cups are, by "
-        f"the limit learned from such cups {by[shaky, 'learned', 0, 0.0]:.1%}, and 50 g that swing by 10 degrees are still found in "
-        f"{by[shaky, 'learned', 50, 10.0]:.0%}."
+        f"({by['still', 'wander', 20, 3.0]:.0%}); where the hand trembles ({tremble:g} m/s2) {by[shaky, 'spectrum', 0, 0.0]:.0%} of the "
+        f"empty cups are, by the limit learned from such cups {by[shaky, 'learned', 0, 0.0]:.1%}, and 50 g that swing by 10 degrees are "
+        f"still found in {by[shaky, 'learned', 50, 10.0]:.0%}."
     )
