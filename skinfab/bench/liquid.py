@@ -37,7 +37,7 @@ WATER_G, ANGLES_DEG = (2, 5, 10, 20, 50, 100), (3.0, 10.0)
 CUPS, EMPTY, LIMITED, LEARNED = 40, 300, 300, 12
 RULES = ("wander", "spectrum", "learned")
 #: A still hand's scene without one of its terms.
-TERMS = {
+TERMS: Mapping[str, Mapping[str, Any]] = {
     "all terms": {},
     "swing that fades": {"damping": 0.0},
     "pull of the swing's speed": {"fling": 0.0},
@@ -158,12 +158,12 @@ def _found(logs: Sequence[WrenchLog], wander: float, model: LiquidModel) -> dict
     return dict(zip(RULES, counts, strict=True))
 
 
-def without(*, cups: int = 60, progress: Progress = silent) -> list[TermRow]:
-    """A row for each of `TERMS`."""
+def without(*, of: Mapping[str, Mapping[str, Any]] = TERMS, cups: int = 60, progress: Progress = silent) -> list[TermRow]:
+    """A row for each term."""
     rows = []
-    for k, (name, terms) in enumerate(TERMS.items()):
-        progress(k / len(TERMS), f"liquids: {name}")
-        scene = replace(CupScene(), **terms)  # type: ignore[arg-type]
+    for k, (name, terms) in enumerate(of.items()):
+        progress(k / len(of), f"liquids: {name}")
+        scene = replace(CupScene(), **terms)
 
         def found(grams: int, angle: float, count: int, scene: CupScene = scene) -> float:
             judged = [stirred(stir(water_kg=grams / 1000, angle_deg=angle, scene=scene, seed=[7, grams, j])) for j in range(count)]

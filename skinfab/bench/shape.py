@@ -338,7 +338,7 @@ def sentence(table: Sequence[Mapping[str, Any]], regrasped: Sequence[Mapping[str
     off = {way: " / ".join(f"{x:.1f}" for x in sides) for way, sides in cuboid.items()}
     return (
         f"Shapes of new objects at any turn, simulated: the published 24 numbers tell {raw:.0%}, pose-free ones {free:.0%}, the misfits "
-        f"of three fits {here:.0%}; of the {gated['answered']:.0%} that are surer than {CONFIDENCE:g} {gated['right']:.1%} are right, and "
-        f"grasping again ({again['grasps']:.1f} grasps an object) gives {again['right']:.1%}. A cuboid's sides are off by {off['fit']} mm "
-        f"(median) by the fit, as published by {off['published']}."
+        f"of three fits {here:.0%}; of the {gated['answered']:.0%} that are surer than {CONFIDENCE:g} and fit {gated['right']:.1%} are "
+        f"right, and grasping again ({again['grasps']:.1f} grasps an object) gives {again['right']:.1%}. A cuboid's sides are off by "
+        f"{off['fit']} mm (median) by the fit, as published by {off['published']}."
     )

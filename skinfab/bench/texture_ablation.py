@@ -68,11 +68,18 @@ class TermRow:
     third_mn: float
 
 
-def slides_without(*, seeds: int = 2, specimens: int = 6, slides: int = 3, progress: Progress = silent) -> list[TermRow]:
-    """A row for each of `TERMS`."""
+def slides_without(
+    *,
+    of: Mapping[str, tuple[dict[str, object], dict[str, object]]] = TERMS,
+    seeds: int = 2,
+    specimens: int = 6,
+    slides: int = 3,
+    progress: Progress = silent,
+) -> list[TermRow]:
+    """A row for each term."""
     rows = []
-    for k, (name, (scene, material)) in enumerate(TERMS.items()):
-        progress(k / len(TERMS), f"slides: {name}")
+    for k, (name, (scene, material)) in enumerate(of.items()):
+        progress(k / len(of), f"slides: {name}")
         made = replace(SlideScene(), **scene)  # type: ignore[arg-type]
         materials: dict[str, Material] = {of: replace(each, **material) for of, each in MATERIALS.items()}  # type: ignore[arg-type]
         sets = [texture_logs(specimens=specimens, slides=slides, seed=seed, scene=made, materials=materials) for seed in range(seeds)]

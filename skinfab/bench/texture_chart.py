@@ -42,6 +42,6 @@ def draw(table: Sequence[Mapping[str, Any]], path: Path) -> None:
         axes.set_xticks(ticks, [f"{n}\n{n / 200:.2f} s" for n in ticks], fontsize=8)
         axes.set_ylabel(label, fontsize=9)
         axes.grid(True, lw=0.3, alpha=0.6)
-    panels[0].legend(fontsize=7)
+    panels[1].legend(fontsize=7, loc="center right")
     panels[1].set_xlabel("samples of a spectrum (at 200 Hz)", fontsize=9)
     atomic_write(path, png(figure))

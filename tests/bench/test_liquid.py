@@ -1,5 +1,6 @@
 """The chart of liquids: what it measures, and that its sentence says what its table holds."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -7,6 +8,7 @@ import pytest
 from skinfab.bench import liquid
 from skinfab.bench.liquid_chart import draw
 from skinfab.fingertip.force.liquid_model import LiquidModel, Trained
+from skinfab.fingertip.force.liquid_simulator import CupScene
 from skinfab.rates import Rate
 
 
@@ -28,6 +30,8 @@ def test_a_small_table_its_chart_and_its_sentence(tmp_path: Path, monkeypatch: p
 
 
 def test_what_each_term_is_there_for() -> None:
-    rows = {row.without: row for row in liquid.without(cups=3)}
-    assert set(rows) == set(liquid.TERMS)
+    some = {name: liquid.TERMS[name] for name in ("all terms", "nine tenths of the moment's noise")}
+    rows = {row.without: row for row in liquid.without(of=some, cups=3)}
+    assert set(rows) == set(some)
     assert rows["nine tenths of the moment's noise"].found_10_g_3_deg > rows["all terms"].found_10_g_3_deg
+    assert all(replace(CupScene(), **terms) != CupScene() for name, terms in liquid.TERMS.items() if name != "all terms")

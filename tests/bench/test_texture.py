@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 from skinfab.bench.texture import measure, peak_errors, sentence
+from skinfab.bench.texture_ablation import TERMS, slides_without
 from skinfab.bench.texture_chart import draw
 
 
@@ -25,3 +26,15 @@ def test_a_small_table_its_chart_and_its_sentence(tmp_path: Path) -> None:
     assert said.startswith("Texture, simulated: from 512 samples") and f"{100 * ours['accuracy']:.1f} % of the slides" in said
     draw(rows, tmp_path / "a.png")
     assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_what_each_term_of_the_slides_is_there_for() -> None:
+    some = {name: TERMS[name] for name in ("all terms", "the spool's ripple", "corrugation", "second harmonic", "noise")}
+    rows = {row.without: row for row in slides_without(of=some, seeds=1, specimens=3, slides=2)}
+    assert list(rows) == list(some)
+    whole = rows["all terms"]
+    assert rows["the spool's ripple"].first_peak < whole.first_peak - 0.1
+    assert rows["corrugation"].bands < whole.bands - 0.1 and rows["corrugation"].peak_sd_hz > 2 * whole.peak_sd_hz
+    assert rows["second harmonic"].third_mn > 2 * whole.third_mn
+    assert rows["noise"].paper_span_deg < 0.7 * whole.paper_span_deg
+    assert all(0 <= part <= 1 for row in rows.values() for part in (row.bands, row.published, row.under_load, row.third_peak))

@@ -148,11 +148,11 @@ def test_liquids(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_a_limit_is_learned_from_empty_cups_and_used(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    made = said(capsys, "simulate", "liquid", "-o", tmp_path / "logs", "--trials", "3", "--seconds", "12")["files"]
+    made = said(capsys, "simulate", "liquid", "-o", tmp_path / "logs", "--trials", "2", "--seconds", "12")["files"]
     empty = [name for name in made if "-0-g-" in name]
     learned = said(capsys, "train", "liquid", *empty, "-o", tmp_path / "learned", "--false-alarm", "0.1", "--seconds", "3")
-    assert learned["simulated"] and learned["pieces"] == 24 and learned["logs"] == 6 and 0 < learned["limit"] < 0.5
-    assert set(learned["held_out_false_alarm"]) == {"value", "low", "high"} and len(learned["made_from"]) == 6
+    assert learned["simulated"] and learned["pieces"] == 16 and learned["logs"] == 4 and 0 < learned["limit"] < 0.5
+    assert set(learned["held_out_false_alarm"]) == {"value", "low", "high"} and len(learned["made_from"]) == 4
     result = said(capsys, "run", "liquid", *made, "--model", tmp_path / "learned" / "model.npz", "-o", tmp_path / "out")
     assert result["learned"] and result["limit"] == learned["limit"] and result["false_alarm"] == 0.1
     assert all(cup["liquid"] for cup in result["cups"] if cup["label"] == "liquid")
