@@ -11,6 +11,7 @@ from skinfab.flatten.laplacian import intrinsic
 from skinfab.mesh.model import Mesh
 from skinfab.seams.cut import OpenPiece, mesh_edges
 from skinfab.seams.graph import edge_graph, shortest_tree, trace
+from skinfab.seams.release import Way
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -59,7 +60,7 @@ def grow_dart(mesh: Mesh, piece: OpenPiece, d: FloatArray, weight: FloatArray) -
     return mesh_edges(mesh, piece, piece.topology.edge_ids(path))
 
 
-def dart_paths(mesh: Mesh, piece: OpenPiece, d: FloatArray, weight: FloatArray, *, count: int, apart: float) -> list[IntArray]:
+def dart_ways(mesh: Mesh, piece: OpenPiece, d: FloatArray, weight: FloatArray, *, count: int, apart: float) -> list[Way]:
     """Up to `count` ways for a dart, each from the boundary to another bad spot of a piece.
 
     In turn by excess, curvature and distance as in `grow_dart`; by excess alone; by excess and distance.
@@ -74,8 +75,7 @@ def dart_paths(mesh: Mesh, piece: OpenPiece, d: FloatArray, weight: FloatArray, 
 
     Returns
     -------
-    list of (k,) int64
-        Vertices of the piece, the first on its boundary and no other.
+    list of Way
     """
     seen = _look(mesh, piece, d, weight)
     if seen is None:
@@ -93,13 +93,17 @@ def dart_paths(mesh: Mesh, piece: OpenPiece, d: FloatArray, weight: FloatArray, 
             score[near] = -np.inf
         pairs = trace(seen.before, tip)
         paths.append(np.r_[pairs[::-1, 1], tip])
-    return paths
+    if not paths:
+        return []
+    edges = piece.topology.edge_ids(np.concatenate([np.stack([path[:-1], path[1:]], axis=1) for path in paths]))
+    bounds = np.cumsum([len(path) - 1 for path in paths])[:-1]
+    return [Way(path, own) for path, own in zip(paths, np.split(edges, bounds), strict=True)]
 
 
 def _look(mesh: Mesh, piece: OpenPiece, d: FloatArray, weight: FloatArray) -> _Outlook | None:
     topology, n = piece.topology, len(piece.vertices)
     on_boundary = np.zeros(n, dtype=bool)
-    on_boundary[topology.boundary_loops[0]] = True
+    on_boundary[topology.E[topology.is_boundary]] = True
     if on_boundary.all():
         return None
     edge_weight = weight[mesh_edges(mesh, piece, np.arange(len(topology.E)))]

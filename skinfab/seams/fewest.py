@@ -17,8 +17,8 @@ from skinfab.mesh.model import Mesh
 from skinfab.seams.coarse import coarsen, transfer
 from skinfab.seams.cut import OpenPiece, mesh_edges, open_pieces
 from skinfab.seams.disk import cut_to_disk, far_points
-from skinfab.seams.graph import edge_graph, shortest_tree, trace
 from skinfab.seams.glue import glue_pieces
+from skinfab.seams.graph import edge_graph, shortest_tree, trace
 from skinfab.seams.growth import Grown, grow_darts, laid_apart, lay_out
 from skinfab.seams.judge import Limits, judge
 from skinfab.seams.refine import Judged, refine_seams
@@ -40,6 +40,9 @@ _STARTS = 3
 
 #: The first slit is this part of the root of the area long: just enough to lay the rest out.
 _SLIT = 0.25
+
+#: A finer mesh shows hardly less than half of the d above 4 of the coarse one.
+_COARSE_EXCESS = 2.0
 
 #: In the search a flattening need not be driven to the end: d is known to 1 % of what is above 4.
 _SEARCH_DECREASE = 1e-2
@@ -143,8 +146,11 @@ def _plans(small: _Level, bound: float, report: Callable[[float], None]) -> list
             opened = open_pieces(mesh, cut, faces=part.faces)
             if len(opened) != 1 or not opened[0].is_disk:
                 continue
-            grown = grow_darts(mesh, lay_out(mesh, opened[0]), bound, small.weight, cut=cut, forbidden=small.forbidden)
-            found.append(_Plan(part.faces, opening, grown))
+            rival = min((plan.grown for plan in found if plan.grown.mean <= bound), key=lambda grown: grown.length, default=None)
+            start = lay_out(mesh, opened[0])
+            grown = grow_darts(mesh, start, bound, small.weight, cut=cut, forbidden=small.forbidden, rival=rival)
+            if grown.mean <= bound or rival is None:
+                found.append(_Plan(part.faces, opening, grown))
         done += len(part.faces)
         if found:
             plans.append(_shortest(small, found, bound))
@@ -152,9 +158,9 @@ def _plans(small: _Level, bound: float, report: Callable[[float], None]) -> list
 
 
 def _shortest(small: _Level, found: list[_Plan], bound: float) -> _Plan:
-    """The plan with the least seam; that one alone is laid out anew where it covers itself, which takes far longer."""
-    length = [plan.grown.length + float(small.mesh.edge_lengths[plan.opening].sum()) for plan in found]
-    plan = found[int(np.argmin(length))]
+    """The plan with the least seam within the bound; it alone is laid out anew where it covers itself, which takes far longer."""
+    lengths = small.mesh.edge_lengths
+    plan = min(found, key=lambda plan: (plan.grown.mean > bound, plan.grown.length + float(lengths[plan.opening].sum())))
     if plan.grown.good or plan.grown.mean > bound:
         return plan
     cut = small.locked.copy()
@@ -184,12 +190,16 @@ def _openings(small: _Level, part: OpenPiece) -> list[IntArray]:
 
 def _fewest_that_do(small: _Level, plans: list[_Plan], middle: _Level, limits: Limits, report: Callable[[float], None]) -> BoolArray:
     """Seams on `middle` with as many of each plan's darts as it needs, by bisection; all plans at a time."""
+    high = np.array([len(plan.grown.darts) for plan in plans], dtype=np.int64)
+    if middle is small:  # each dart was cut because it was needed
+        return _with_darts(small, plans, high)
+    enough = 4 + _COARSE_EXCESS * (limits.mean - 4)
+    low = np.array([sum(dart.mean > enough for dart in plan.grown.darts) for plan in plans], dtype=np.int64)
     owner = np.full(len(small.mesh.F), -1)
     for k, plan in enumerate(plans):
         owner[plan.faces] = k
-    centres = cKDTree(small.mesh.V[small.mesh.F].mean(axis=1)) if middle is not small else None
-    low, high = np.zeros(len(plans), dtype=np.int64), np.array([len(plan.grown.darts) for plan in plans], dtype=np.int64)
-    rounds = max(int(high.max(initial=0)).bit_length(), 1)
+    centres = cKDTree(small.mesh.V[small.mesh.F].mean(axis=1))
+    rounds = max(int((high - low).max(initial=0)).bit_length(), 1)
     for k in range(rounds):
         report(k / rounds)
         if (low >= high).all():
@@ -206,10 +216,8 @@ def _fewest_that_do(small: _Level, plans: list[_Plan], middle: _Level, limits: L
     return _carried(small, _with_darts(small, plans, high), middle)
 
 
-def _owner(middle: _Level, piece: OpenPiece, owner: IntArray, centres: cKDTree | None) -> int:
+def _owner(middle: _Level, piece: OpenPiece, owner: IntArray, centres: cKDTree) -> int:
     """The plan that most of a piece belongs to."""
-    if centres is None:
-        return int(owner[piece.faces[0]])
     near = owner[centres.query(middle.mesh.V[middle.mesh.F[piece.faces]].mean(axis=1))[1]]
     return int(np.bincount(near[near >= 0]).argmax()) if (near >= 0).any() else 0
 

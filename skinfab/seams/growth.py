@@ -18,8 +18,8 @@ from skinfab.flatten.isometric import Apart, IsometricSolver
 from skinfab.flatten.overlap import overlap_area
 from skinfab.mesh.model import Mesh
 from skinfab.seams.cut import OpenPiece, mesh_edges, open_pieces
-from skinfab.seams.darts import dart_paths
-from skinfab.seams.release import path_edges, releases, right_of
+from skinfab.seams.darts import dart_ways
+from skinfab.seams.release import Way, held_releases, releases, right_of
 from skinfab.tolerances import OVERLAP_FRACTION
 
 FloatArray = NDArray[np.float64]
@@ -27,14 +27,20 @@ IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 
 #: Spots that a dart is looked for at, no two nearer than this part of the root of the area; more where none will do.
-_CANDIDATES, _SPREAD = 8, 0.1
+_CANDIDATES, _SPREAD = 12, 0.1
 _MORE = 9
+
+#: Of so many the gain is foretold in full.
+_SOLVED = 6
 
 #: A dart is worth what it gains over its length to this power: under 1, so that one long dart may take the place of two.
 _LENGTH_POWER = 0.5
 
 #: Gain beyond what is wanted counts for nothing; what is foretold is not all had, so this much more is wanted.
 _WANTED = 1.25
+
+#: A start whose darts are this many times as long as another's for the same mean d hardly makes up for it.
+_BEHIND = 1.15
 
 #: A piece with this many darts is better parted.
 _MOST_DARTS = 60
@@ -56,10 +62,12 @@ class Dart:
         Of the mesh.
     mean : float
         The piece's mean d before.
+    length : float, mm
     """
 
     edges: IntArray
     mean: float
+    length: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,6 +98,12 @@ class Grown:
     apart: bool
     good: bool
 
+    def length_at(self, mean: float) -> float:
+        """Length of the first of its darts that brought the mean d down to `mean`; endless where none did."""
+        if self.mean > mean:
+            return np.inf
+        return sum(dart.length for dart in self.darts if dart.mean > mean)
+
 
 def lay_out(mesh: Mesh, piece: OpenPiece) -> Grown:
     """A disk at its least d, without darts yet."""
@@ -106,6 +120,7 @@ def grow_darts(
     *,
     cut: BoolArray,
     forbidden: BoolArray,
+    rival: Grown | None = None,
 ) -> Grown:
     """Cut darts until the mean d is at most `bound`.
 
@@ -121,26 +136,30 @@ def grow_darts(
         What bounds the disk without its darts.
     forbidden : (e,) bool
         Never cut.
+    rival : Grown, optional
+        Give up when its darts were much shorter for the same mean d.
 
     Returns
     -------
     Grown
-        Not `good` where it still covers itself, or nothing helps any more.
+        Not `good` where it still covers itself, nothing helps any more, or the rival is ahead.
     """
     now, cut = start, cut.copy()
     for dart in start.darts:
         cut[dart.edges] = True
     solver = IsometricSolver(mesh.V[now.piece.vertices], now.piece.F)
     while now.mean > bound and len(now.darts) < _MOST_DARTS:
-        path = _best_dart(mesh, now, solver, bound, weight, forbidden)
-        if path is None:
+        way = _best_dart(mesh, now, solver, bound, weight, forbidden)
+        if way is None:
             return now
-        edges = mesh_edges(mesh, now.piece, path_edges(now.piece.topology, path))
+        edges = mesh_edges(mesh, now.piece, way.edges)
         cut[edges] = True
         parts = open_pieces(mesh, cut, faces=now.piece.faces)
+        if rival is not None and now.length > _BEHIND * rival.length_at(now.mean):
+            return now
         if len(parts) != 1:  # the boundary touches itself there
             return now
-        now, solver = _opened(mesh, now, parts[0], path, edges)
+        now, solver = _opened(mesh, now, parts[0], way, edges)
     area = float(mesh.face_areas[now.piece.faces].sum())
     flat = now.apart or overlap_area(now.piece.F, now.UV, topology=now.piece.topology) <= OVERLAP_FRACTION * area
     return replace(now, good=bool(now.mean <= bound and flat))
@@ -153,37 +172,49 @@ def laid_apart(mesh: Mesh, grown: Grown) -> Grown:
     return replace(grown, UV=uv, mean=measure(V, piece.F, uv, topology=piece.topology).mean, apart=True)
 
 
-def _best_dart(mesh: Mesh, now: Grown, solver: IsometricSolver, bound: float, weight: FloatArray, forbidden: BoolArray) -> IntArray | None:
-    """Vertices of the piece from its boundary to the tip, or None where no dart gains anything."""
+def _best_dart(mesh: Mesh, now: Grown, solver: IsometricSolver, bound: float, weight: FloatArray, forbidden: BoolArray) -> Way | None:
+    """From the boundary to the tip, or None where no dart gains anything."""
     topology = now.piece.topology
     d = _d_of(solver, now.UV)
     size = float(np.sqrt(mesh.face_areas[now.piece.faces].sum()))
     apart = keep_apart(mesh.V[now.piece.vertices], topology) if now.apart else None
     wanted = _WANTED * (now.mean - bound)
     for times in (1, _MORE):
-        paths = dart_paths(mesh, now.piece, d, weight, count=times * _CANDIDATES, apart=_SPREAD * size / np.sqrt(times))
-        best, found = 0.0, None
-        for path, gain in zip(paths, releases(solver, now.UV, topology, paths, apart=apart), strict=True):
-            edges = mesh_edges(mesh, now.piece, path_edges(topology, path))
-            worth = np.minimum(gain, wanted) / np.cumsum(mesh.edge_lengths[edges]) ** _LENGTH_POWER
-            worth[np.cumsum(forbidden[edges]) > 0] = 0.0
-            k = int(np.argmax(worth))
-            if worth[k] > best:
-                best, found = float(worth[k]), path[: k + 2]
-        if found is not None:
-            return found
+        ways = dart_ways(mesh, now.piece, d, weight, count=times * _CANDIDATES, apart=_SPREAD * size / np.sqrt(times))
+
+        def worth(gains: list[FloatArray], ways: list[Way]) -> list[FloatArray]:
+            return [_worth(mesh, now.piece, way, gain, wanted, forbidden) for way, gain in zip(ways, gains, strict=True)]
+
+        rough = [value.max() for value in worth(held_releases(solver, now.UV, topology, ways), ways)]
+        ways = [ways[k] for k in np.argsort(rough)[::-1][: times * _SOLVED] if rough[k] > 0]
+        if not ways:
+            continue
+        values = worth(releases(solver, now.UV, topology, ways, apart=apart), ways)
+        best = int(np.argmax([value.max() for value in values]))
+        if (k := int(np.argmax(values[best]))) >= 0 and values[best][k] > 0:
+            end = int(ways[best].ends[k])
+            return Way(ways[best].vertices[: end + 1], ways[best].edges[:end])
     return None
 
 
-def _opened(mesh: Mesh, now: Grown, piece: OpenPiece, path: IntArray, edges: IntArray) -> tuple[Grown, IsometricSolver]:
-    """The piece with a dart along `path` cut, laid out from where it was."""
+def _worth(mesh: Mesh, piece: OpenPiece, way: Way, gains: FloatArray, wanted: float, forbidden: BoolArray) -> FloatArray:
+    """Of the dart to each of a way's ends."""
+    edges = mesh_edges(mesh, piece, way.edges)
+    length = np.cumsum(mesh.edge_lengths[edges])[way.ends - 1]
+    allowed = np.cumsum(forbidden[edges])[way.ends - 1] == 0
+    value: FloatArray = np.minimum(gains, wanted) / length**_LENGTH_POWER * allowed
+    return value
+
+
+def _opened(mesh: Mesh, now: Grown, piece: OpenPiece, way: Way, edges: IntArray) -> tuple[Grown, IsometricSolver]:
+    """The piece with a dart along `way` cut, laid out from where it was."""
     V = mesh.V[piece.vertices]
     solver = IsometricSolver(V, piece.F)
     uv = np.empty((len(V), 2))
     uv[piece.F.ravel()] = now.UV[now.piece.F.ravel()]
     if now.apart:
         apart = keep_apart(V, piece.topology)
-        parted = _parted(solver, piece, uv, now, path, apart)
+        parted = _parted(solver, piece, uv, now, way, apart)
         if parted is None:
             uv = flatten_bijective(V, piece.F, topology=piece.topology, tolerance=_DECREASE)
         else:
@@ -191,17 +222,17 @@ def _opened(mesh: Mesh, now: Grown, piece: OpenPiece, path: IntArray, edges: Int
     else:
         uv = solver.refine(uv, tolerance=_DECREASE).UV
     mean = float((_d_of(solver, uv) * solver.weight).sum())
-    dart, length = Dart(edges, now.mean), float(mesh.edge_lengths[edges].sum())
-    return Grown((*now.darts, dart), now.length + length, piece, uv, mean, now.apart, False), solver
+    dart = Dart(edges, now.mean, float(mesh.edge_lengths[edges].sum()))
+    return Grown((*now.darts, dart), now.length + dart.length, piece, uv, mean, now.apart, False), solver
 
 
-def _parted(solver: IsometricSolver, piece: OpenPiece, uv: FloatArray, now: Grown, path: IntArray, apart: Apart) -> FloatArray | None:
+def _parted(solver: IsometricSolver, piece: OpenPiece, uv: FloatArray, now: Grown, way: Way, apart: Apart) -> FloatArray | None:
     """The sides of a fresh cut a little off each other, as a barrier cannot part what touches; None where there is no room."""
+    path, old = way.vertices, now.piece.topology
     place = np.full(len(now.UV), -1)
     place[path[:-1]] = np.arange(len(path) - 1)
     right = np.zeros(len(piece.F), dtype=bool)
-    old = now.piece.topology
-    right[right_of(path, path_edges(old, path), old.F, old.FE, old.EF)] = True
+    right[right_of(path, way.edges, old.F, old.FE, old.EF)] = True
     corners = np.flatnonzero(place[now.piece.F.ravel()] >= 0)
     along = np.gradient(now.UV[path], axis=0)
     left = np.stack([-along[:, 1], along[:, 0]], axis=1) / np.maximum(np.linalg.norm(along, axis=1), np.finfo(float).tiny)[:, None]

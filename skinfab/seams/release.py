@@ -8,11 +8,12 @@ dart; the pivots of its Cholesky factor, taken from the boundary inwards, give t
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
 
 import numba
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import solve_triangular
 
 from skinfab.flatten._dirichlet import assemble, vertex_pattern
 from skinfab.flatten.isometric import Apart, IsometricSolver
@@ -22,11 +23,36 @@ from skinfab.tolerances import NEWTON_RIDGE
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
+#: A dart may end at so many places along its way: enough for the opening's shape between them, and as many columns to solve for.
+_ENDS = 8
+
+
+@dataclass(frozen=True, eq=False)
+class Way:
+    """A way for darts, from the boundary of a piece inwards.
+
+    Parameters
+    ----------
+    vertices : (k,) int64
+        Of the piece; the first on its boundary, the others inside.
+    edges : (k - 1,) int64
+        Of the piece, between them.
+    """
+
+    vertices: IntArray
+    edges: IntArray
+
+    @cached_property
+    def ends(self) -> IntArray:
+        """Places along `vertices` where a dart may end: all, or of many so many, evenly."""
+        most = len(self.edges)
+        return np.unique(np.round(np.linspace(0, most, min(most, _ENDS) + 1)).astype(np.int64))[1:]
+
 
 def releases(
-    solver: IsometricSolver, UV: FloatArray, topology: Topology, paths: Sequence[IntArray], *, apart: Apart | None = None
+    solver: IsometricSolver, UV: FloatArray, topology: Topology, ways: Sequence[Way], *, apart: Apart | None = None
 ) -> list[FloatArray]:
-    """By how much each dart lowers the mean d, to second order.
+    """By how much darts along each way lower the mean d, to second order.
 
     Parameters
     ----------
@@ -35,48 +61,91 @@ def releases(
         At its least d, or near it.
     topology : Topology
         Of the piece.
-    paths : sequence of (k,) int64
-        Vertices from the boundary to the tip.
+    ways : sequence of Way
     apart : Apart, optional
         What keeps the layout from covering itself; it is held as it is.
 
     Returns
     -------
-    list of (k - 1,) float64
-        For the dart that ends on the second vertex of the path, on the third, and so on; not falling.
+    list of (k,) float64
+        For the dart to each of the way's `ends`; not falling.
     """
     factor = solver.factored(UV, apart)
-    UV = np.ascontiguousarray(UV)
-    sides = []
-    for path in paths:
-        faces = right_of(path, path_edges(topology, path), solver.F, topology.FE, topology.EF)
-        sides.append(_other_side(path, faces, UV, solver.F, solver.gradients, solver.weight))
-    loads = np.zeros((2 * solver.n, sum(side.shape[1] for _, side, _ in sides)))
+    sides = _sides(solver, UV, topology, ways)
+    loads = np.zeros((2 * solver.n, sum(side.shape[1] for _, side, _, _ in sides)), order="F")
     column = 0
-    for rows, side, _ in sides:
-        loads[rows, column : column + side.shape[1]] = side
+    for rows, side, _, _ in sides:
+        _put(loads, rows, side, column)
         column += side.shape[1]
-    moved = factor.solve(loads)
+    moved = np.asfortranarray(factor.solve(loads))
     found, column = [], 0
-    for rows, side, force in sides:
-        k = side.shape[1]
-        # The split vertices come first among the rows.
-        stiffness = side[:k] - side.T @ moved[rows, column : column + k]
-        stiffness[np.diag_indices(k)] += NEWTON_RIDGE * np.trace(side[:k]) / k
-        column += k
-        try:
-            L = np.linalg.cholesky((stiffness + stiffness.T) / 2)
-        except np.linalg.LinAlgError:  # nothing holds that side: such a seam is no dart
-            found.append(np.zeros(k // 2))
-            continue
-        share = solve_triangular(L, force, lower=True, check_finite=False)
-        found.append(0.5 * np.cumsum(share**2)[1::2])
+    for rows, side, stiff, force in sides:
+        found.append(_decreases(stiff - _taken(moved, rows, side, column), force))
+        column += side.shape[1]
     return found
 
 
-def path_edges(topology: Topology, path: IntArray) -> IntArray:
-    """Edges between the vertices of a path, (k - 1,)."""
-    return topology.edge_ids(np.stack([path[:-1], path[1:]], axis=1))
+def held_releases(solver: IsometricSolver, UV: FloatArray, topology: Topology, ways: Sequence[Way]) -> list[FloatArray]:
+    """As `releases`, if nothing moved but one side of the dart: less than is gained in truth, and told with no factorisation."""
+    return [_decreases(stiff, force) for _, _, stiff, force in _sides(solver, UV, topology, ways)]
+
+
+def _sides(
+    solver: IsometricSolver, UV: FloatArray, topology: Topology, ways: Sequence[Way]
+) -> list[tuple[IntArray, FloatArray, FloatArray, FloatArray]]:
+    UV = np.ascontiguousarray(UV)
+    sides = []
+    for way in ways:
+        faces = right_of(way.vertices, way.edges, solver.F, topology.FE, topology.EF)
+        sides.append(_other_side(way.vertices, way.ends, faces, UV, solver.F, solver.gradients, solver.weight))
+    return sides
+
+
+@numba.njit(cache=True)
+def _decreases(stiffness: FloatArray, force: FloatArray) -> FloatArray:
+    """Half of force^T stiffness^-1 force for the first two unknowns, the first four, and so on: Cholesky, row by row."""
+    n = force.shape[0]
+    ridge = NEWTON_RIDGE * np.trace(stiffness) / n
+    L, share, decrease = np.zeros((n, n)), np.zeros(n), np.zeros(n // 2)
+    total = 0.0
+    for i in range(n):
+        for j in range(i + 1):
+            x = (stiffness[i, j] + stiffness[j, i]) / 2
+            for k in range(j):
+                x -= L[i, k] * L[j, k]
+            if j < i:
+                L[i, j] = x / L[j, j]
+            elif x + ridge > 0.0:
+                L[i, i] = np.sqrt(x + ridge)
+            else:  # nothing holds that side: such a seam is no dart
+                return np.zeros(n // 2)
+        y = force[i]
+        for k in range(i):
+            y -= L[i, k] * share[k]
+        share[i] = y / L[i, i]
+        total += share[i] ** 2 / 2
+        decrease[i // 2] = total
+    return decrease
+
+
+@numba.njit(cache=True)
+def _put(loads: FloatArray, rows: IntArray, side: FloatArray, column: int) -> None:
+    for c in range(side.shape[1]):
+        for r in range(rows.shape[0]):
+            loads[rows[r], column + c] = side[r, c]
+
+
+@numba.njit(cache=True)
+def _taken(moved: FloatArray, rows: IntArray, side: FloatArray, column: int) -> FloatArray:
+    """What the rest gives way: side^T moved."""
+    k = side.shape[1]
+    taken = np.zeros((k, k))
+    for c in range(k):
+        for r in range(rows.shape[0]):
+            x = moved[rows[r], column + c]
+            for b in range(k):
+                taken[b, c] += side[r, b] * x
+    return taken
 
 
 @numba.njit(cache=True)
@@ -122,17 +191,17 @@ def right_of(path: IntArray, edges: IntArray, F: IntArray, FE: IntArray, EF: Int
 
 @numba.njit(cache=True)
 def _other_side(
-    path: IntArray, faces: IntArray, UV: FloatArray, F: IntArray, gradients: FloatArray, weight: FloatArray
-) -> tuple[IntArray, FloatArray, FloatArray]:
-    """Of the faces on the right of a path: the unknowns they meet (those of the split vertices first), their part of the
-    Hessian's columns of the split vertices, and of the gradient."""
+    path: IntArray, ends: IntArray, faces: IntArray, UV: FloatArray, F: IntArray, gradients: FloatArray, weight: FloatArray
+) -> tuple[IntArray, FloatArray, FloatArray, FloatArray]:
+    """Of the faces on the right of a path, for one side of it moving by itself, by so much at its first vertex and at each end
+    but the last, and in between in proportion: the unknowns met, the forces there, the stiffness against it, the gradient."""
     number = np.full(UV.shape[0], -1)
     met = np.empty(path.shape[0] + 3 * faces.shape[0], dtype=np.int64)
-    count = 0
-    for v in path[:-1]:
-        number[v], met[count] = count, v
-        count += 1
-    k = 2 * count
+    split = path.shape[0] - 1
+    count = split
+    met[:count] = path[:-1]
+    for j in range(count):
+        number[path[j]] = j
     local = np.empty((faces.shape[0], 3), dtype=np.int64)
     for f in range(faces.shape[0]):
         for j in range(3):
@@ -141,18 +210,34 @@ def _other_side(
                 number[v], met[count] = count, v
                 count += 1
             local[f, j] = number[v]
-    u = UV[met[:count]]
     indptr, indices, place = vertex_pattern(local, count)
-    data, gradient = assemble(u, local, gradients[faces], weight[faces], place, indptr)
-    columns = np.zeros((2 * count, k))
+    data, gradient = assemble(UV[met[:count]], local, gradients[faces], weight[faces], place, indptr)
+    nodes = ends.shape[0]
+    share = np.zeros((split, nodes))
+    for j in range(nodes):
+        low, high = (0 if j == 0 else ends[j - 1]), ends[j]
+        for i in range(low, min(high, split)):
+            part = (i - low) / (high - low)
+            share[i, j] = 1 - part
+            if j + 1 < nodes:
+                share[i, j + 1] = part
+    side = np.zeros((2 * count, 2 * nodes))
     for c in range(2 * count):
         for slot in range(indptr[c], indptr[c + 1]):
             r = indices[slot]
-            if c < k:
-                columns[r, c] = data[slot]
-            if r < k:
-                columns[c, r] = data[slot]
+            for j in range(nodes):
+                if c < 2 * split:
+                    side[r, 2 * j + c % 2] += data[slot] * share[c // 2, j]
+                if r < 2 * split and r != c:
+                    side[c, 2 * j + r % 2] += data[slot] * share[r // 2, j]
+    stiff, force = np.zeros((2 * nodes, 2 * nodes)), np.zeros(2 * nodes)
+    for i in range(split):
+        for j in range(nodes):
+            for x in range(2):
+                force[2 * j + x] += share[i, j] * gradient[2 * i + x]
+                for b in range(2 * nodes):
+                    stiff[2 * j + x, b] += share[i, j] * side[2 * i + x, b]
     rows = np.empty(2 * count, dtype=np.int64)
     rows[::2] = 2 * met[:count]
     rows[1::2] = 2 * met[:count] + 1
-    return rows, columns, gradient[:k]
+    return rows, side, stiff, force
