@@ -35,6 +35,8 @@ _STEPS, _SETTLED = 100, 1e-7
 _DETERMINED = 1e-9
 #: A weight that is known no better than to this part of itself is none.
 _WORST_PART = 0.5
+#: A drift's variance is looked for over these parts of what offsets differ by at all: both ends hold next to none of the chance.
+_DRIFT_RANGE, _DRIFT_STEPS = (1e-6, 1e5), 300
 #: Numbers of the model: three offsets of the force and of the moment, a weight, and its moment.
 _NUMBERS = 10
 #: A covariance that is off by no more than this part of its largest number is that of a file that was written and read.
@@ -182,20 +184,36 @@ def learn_hand(weighings: Sequence[Poses]) -> HandModel:
     covariance = mean @ spread @ mean.T
     offsets = found[: 6 * count].reshape(count, 6)
     if count > 1:
-        # What noise alone makes them differ by; an error that they share, such as that of the weight, does not.
-        apart = np.kron(np.eye(count) - 1 / count, np.eye(6))
-        own = (apart @ spread[: 6 * count, : 6 * count] @ apart.T).diagonal().reshape(count, 6).sum(axis=0) / (count - 1)
+        # What weighings differ by, and how much of that noise explains; an error that they share, such as that of the weight, is none.
+        apart = np.linalg.svd(np.ones((1, count)))[2][1:]
         for part in (slice(0, 3), slice(3, 6)):
-            drift = max(float(offsets[:, part].var(axis=0, ddof=1).mean() - own[part].mean()), 0.0)
-            covariance[part, part] += drift * (1 + 1 / count) * _few(3 * (count - 1)) * np.eye(3)
+            contrast = np.kron(apart, np.eye(6)[part])
+            own = contrast @ spread[: 6 * count, : 6 * count] @ contrast.T
+            covariance[part, part] += (1 + 1 / count) * _drift(contrast @ offsets.ravel(), own) * np.eye(3)
     return HandModel(offsets.mean(axis=0), float(found[-4]), found[-3:].copy(), covariance)
 
 
-def _few(freedom: int) -> float:
-    """By how much wider a variance is to be taken that was estimated from so few numbers, so that 95 % stay 95 %."""
-    from scipy.stats import norm, t
+def _drift(apart: FloatArray, own: FloatArray) -> float:
+    """The variance by which offsets drift, so wide that 95 % stay 95 % although few weighings show it, and through noise.
 
-    return float((t.ppf(0.975, freedom) / norm.ppf(0.975)) ** 2)
+    What is not known of it is integrated over, by Jeffreys' prior of a variance beside known ones (Tiao and Tan 1965); without
+    noise that is Student's t. An estimate of its own is too small, often nothing, where noise alone makes offsets differ as much.
+    """
+    from scipy.optimize import brentq
+    from scipy.stats import norm
+
+    noise, axes = np.linalg.eigh(own)
+    noise, square = np.maximum(noise, 0.0), (axes.T @ apart) ** 2
+    scale = float((noise + square).mean())
+    drift = scale * np.geomspace(*_DRIFT_RANGE, _DRIFT_STEPS)
+    whole = noise[:, None] + drift
+    logarithm = np.log(drift) + 0.5 * np.log((1 / whole**2).sum(axis=0)) - 0.5 * (np.log(whole) + square[:, None] / whole).sum(axis=0)
+    likely = np.exp(logarithm - logarithm.max())
+    likely /= likely.sum()
+    inside = norm.ppf(0.975)
+    low, high = (inside * math.sqrt(end) for end in drift[[0, -1]])
+    limit = brentq(lambda far: float(likely @ norm.sf(far / np.sqrt(drift))) - 0.025, low, high, rtol=1e-4)
+    return (limit / inside) ** 2
 
 
 def left_over(weighings: Sequence[Poses]) -> tuple[tuple[float, float], tuple[float, float]]:

@@ -115,3 +115,20 @@ def test_a_model_comes_back_as_it_was_and_others_are_refused(tmp_path: Path) -> 
     save_model(tmp_path / "d.npz", kind="force liquid", facts={}, arrays={})
     with pytest.raises(InputError, match="another kind"):
         load_hand(tmp_path / "d.npz")
+
+
+def test_a_drift_is_told_beside_a_weight_that_leaves_offsets_along_it_hardly_known() -> None:
+    inside = []
+    for seed in range(80):
+        rng = np.random.default_rng(seed)
+        drift = 0.02 * rng.standard_normal((3, 3))  # of two weighings and of the time after them
+        own = np.tile(np.diag([0.006] * 3 + [0.5] * 3) ** 2, (8, 1, 1))
+        weighings = []
+        for k in range(2):
+            empty = exact(8, seed=10 * seed + k, span=45.0)
+            force = empty.force + drift[k] + 0.006 * rng.standard_normal((8, 3))
+            weighings.append(replace(empty, force=force, moment=empty.moment + 0.5 * rng.standard_normal((8, 3)), covariance=own))
+        model = learn_hand(weighings)
+        off = (OFFSET[:3] + drift[2] - model.offset[:3]) / np.sqrt(model.covariance.diagonal()[:3])
+        inside += (np.abs(off[:2]) < 1.96).tolist()  # across gravity, where drift is most of what is not known
+    assert wilson(sum(inside), len(inside)).low < 0.95 < wilson(sum(inside), len(inside)).high
