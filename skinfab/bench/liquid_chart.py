@@ -52,11 +52,11 @@ def draw(table: Sequence[Mapping[str, Any]], path: Path) -> None:
         alarms.vlines(place, low, high, color=colour, lw=1)
     alarms.axhline(FALSE_ALARM, color="#555555", lw=1, ls="--")
     alarms.set_yscale("log")
-    alarms.set_xticks(range(len(conditions)), [fill(each, 13) for each in conditions], fontsize=8)
+    alarms.set_xticks(range(len(conditions)), [fill(each, 9) for each in conditions], fontsize=8)
     alarms.set(
-        ylabel="empty cups taken for full ones, 95 % intervals",
+        ylabel="empty cups taken for full ones",
         ylim=(0.8 * _FLOOR, 1.3),
-        title=f"false alarms (dashed: {FALSE_ALARM:.0%} wanted; none at {_FLOOR:g})",
+        title=f"false alarms, 95 % (dashed: wanted; none: at {_FLOOR:g})",
     )
     alarms.title.set_size(9)
     for axes in figure.axes:
