@@ -33,6 +33,8 @@ def watch_port(
     every: int,
     baud: int | None,
     seconds: float | None,
+    rate_hz: float | None,
+    units_said: bool | None,
     quiet: bool,
 ) -> tuple[list[Told], dict[str, Any]]:
     """Decide on what a port sends until Ctrl-C, or for a while; what is touched is printed as it changes.
@@ -44,7 +46,7 @@ def watch_port(
     """
     from skinfab.cli.record import outage_notes, outages
     from skinfab.fingertip.nail.live import NailWatch
-    from skinfab.fingertip.nail.units import absent
+    from skinfab.fingertip.nail.units import absent, units_note
     from skinfab.readout.serial_port import BAUD, SerialPort
     from skinfab.readout.source import HostClock
 
@@ -52,7 +54,7 @@ def watch_port(
     latency: list[float] = []
     speaker = _Speaker(quiet)
     with SerialPort(port, baud=baud or BAUD) as source:
-        watch = NailWatch(model, source.stream, samples=samples, every=every, regression=regression)
+        watch = NailWatch(model, source.stream, samples=samples, every=every, regression=regression, rate_hz=rate_hz)
         clock, end = HostClock(), time.monotonic() + (seconds or math.inf)
         began, began_at, heard = clock.now(), time.time(), time.monotonic()
         frames = passed_over = 0
@@ -83,7 +85,12 @@ def watch_port(
             "window_readings": watch.samples,
             "latency_ms": latency_facts(latency),
             "outages": gone,
-            "notes": [*absent(source.stream), *outage_notes(port, gone), *[f"{counts.bad} packets were damaged"] * bool(counts.bad)],
+            "notes": [
+                *absent(source.stream),
+                *units_note(units_said, source.stream, "stream"),
+                *outage_notes(port, gone),
+                *[f"{counts.bad} packets were damaged"] * bool(counts.bad),
+            ],
         }
     return told, facts
 

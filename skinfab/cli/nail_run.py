@@ -11,11 +11,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from skinfab.cli import steps
+from skinfab.cli.nail_judged import judged, participants_of
 from skinfab.cli.record import baud
 
 if TYPE_CHECKING:
     from skinfab.fingertip.nail.live import Told
-    from skinfab.readout.logs.log import Log
 
 #: Readings from one decision to the next: 5.7 ms, a turn of the motor.
 _EVERY = 8
@@ -41,6 +41,9 @@ def add_options(p: argparse.ArgumentParser) -> None:
     )
     p.add_argument(
         "--every", metavar="N", type=steps.counting, help="a decision after so many readings (default: 8; published: its window)"
+    )
+    p.add_argument(
+        "--rate", metavar="HZ", type=steps.positive, help="readings a second, where neither times nor count nor the stream itself say it"
     )
     p.add_argument("--seconds", metavar="S", type=steps.positive, help="of a port: end after so long (default: at Ctrl-C)")
     p.add_argument("--baud", metavar="N", type=baud, help="of a port (default: 921600)")
@@ -104,12 +107,13 @@ def run(args: argparse.Namespace) -> int:
 
 def _from_log(args: argparse.Namespace, content: Any) -> tuple[list[Told], dict[str, Any]]:
     from skinfab.fingertip.nail.live import decide_log
-    from skinfab.fingertip.nail.units import absent, units_said
-    from skinfab.readout.checks import check_times
+    from skinfab.fingertip.nail.pace import pace_of
+    from skinfab.fingertip.nail.units import absent, units_note
     from skinfab.readout.logs.log import read_log
 
     log = read_log(args.log)
-    told, lost = decide_log(content.model, log.recording, samples=args.window, every=args.every, regression=content.regression)
+    pace = pace_of(log.recording, rate_hz=args.rate)
+    told, lost = decide_log(content.model, log.recording, samples=args.window, every=args.every, regression=content.regression, pace=pace)
     samples = getattr(content.model, "samples", args.window)
     facts: dict[str, Any] = {
         "source": log.file,
@@ -118,62 +122,17 @@ def _from_log(args: argparse.Namespace, content: Any) -> tuple[list[Told], dict[
         "frames": len(log.recording),
         "lost": lost,
         "window_readings": samples,
-        "notes": [*log.notes, *(f"{log.file}: {wrong}" for wrong in check_times(log.recording)), *absent(log.recording.stream)],
+        "notes": [
+            *log.notes,
+            *(f"{log.file}: {wrong}" for wrong in pace.notes),
+            *absent(log.recording.stream),
+            *units_note(content.made_from.get("units_said"), log.recording.stream, "log"),
+        ],
     }
-    said = content.made_from.get("units_said")
-    if said is not None and said != units_said(log.recording.stream):
-        one, other = ("model's logs declare", "this log does not") if said else ("log declares", "the model's did not")
-        facts["notes"].append(f"the {one} the units, and {other}: what says nothing is taken for G and deg/s, and wrong in other units")
     if args.labels:
-        judged, notes = _judged(args.labels, log, told, samples, content)
-        facts |= judged | {"notes": [*facts["notes"], *notes]}
+        of, notes = judged(args.labels, log, told, samples, content, pace)
+        facts |= of | {"notes": [*facts["notes"], *notes]}
     return told, facts
-
-
-def _judged(path: Path, log: Log, told: Sequence[Told], samples: int, content: Any) -> tuple[dict[str, Any], list[str]]:
-    """How many of the trials of this log that the model did not learn from are right: what most of the windows in a trial say."""
-    import numpy as np
-
-    from skinfab.errors import InputError
-    from skinfab.fingertip.confusion import grouped_accuracy
-    from skinfab.fingertip.nail.doubles import without_doubles
-    from skinfab.fingertip.nail.labels import read_labels
-
-    labels, _ = read_labels(path)
-    own = [each for each in labels if each.log == log.file]
-    if not own:
-        raise InputError(f"{path} has no row of {log.file}; give the table that goes with the log")
-    rows, notes = without_doubles(own, [each.log for each in own], path)
-    own = [own[k] for k in rows]
-    learned = content.made_from.get("learned")
-    spans = (learned or {}).get(log.sha256, [])
-    fresh = [each for each in own if not any(each.start_s < end and start < each.end_s for start, end in spans)]
-    if learned is None:
-        notes.append("the model does not say which trials it learned from; where they are among these, more is right than of new ones")
-    strangers = {each.participant for each in own if each.participant} - set(known := _participants(content))
-    if strangers and known:
-        notes.append(
-            f"the trials are of {', '.join(sorted(strangers))} and the model learned from {', '.join(known)}: fingers differ, and "
-            "another's is often told wrong; train a model for each person"
-        )
-    if left_out := len(own) - len(fresh):
-        notes.append(f"the model learned from {left_out} of the {len(own)} trials, which are not counted")
-    rate_hz = content.model.rate_hz
-    right, groups = [], []
-    for k, each in enumerate(fresh):
-        # Of the last reading: half a reading to spare, so that a window that just fits does.
-        first, last = each.start_s + (samples - 1.5) / rate_hz, each.end_s - 0.5 / rate_hz
-        said = Counter(one.decision.label for one in told if one.decision and first <= one.time_s <= last)
-        if said:
-            right.append(said.most_common(1)[0][0] == each.label)
-            groups.append(f"{each.participant}/{each.trial or k}")
-    if fresh and not right:
-        notes.append(f"no trial has a window of {samples} readings that could be decided; give a shorter --window")
-    of = {"trials": len(right), "right": sum(right), "learned_from": left_out}
-    if not right:
-        return {"labels": {"file": path.name, **of, "accuracy": {"value": None, "low": None, "high": None}}}, notes
-    rate = grouped_accuracy(np.array(right), groups)
-    return {"labels": {"file": path.name, **of, "accuracy": {"value": rate.value, "low": rate.low, "high": rate.high}}}, notes
 
 
 def _from_port(args: argparse.Namespace, content: Any) -> tuple[list[Told], dict[str, Any]]:
@@ -187,6 +146,8 @@ def _from_port(args: argparse.Namespace, content: Any) -> tuple[list[Told], dict
         every=args.every,
         baud=args.baud,
         seconds=args.seconds,
+        rate_hz=args.rate,
+        units_said=content.made_from.get("units_said"),
         quiet=args.json,
     )
 
@@ -206,7 +167,7 @@ def _facts(args: argparse.Namespace, content: Any, told: Sequence[Told], facts: 
         notes.append(f"{left_out:.1%} of the readings are missing or saturated and were left out")
     if (off := sum(each.turning is False for each in told) / len(told)) > 0:
         notes.append(f"the motor did not turn in {off:.1%} of the windows, which were not decided")
-    whose = f", here of {', '.join(known)}" if (known := _participants(content)) else ""
+    whose = f", here of {', '.join(known)}" if (known := participants_of(content)) else ""
     if (strange := sum(each.strange for each in decisions) / len(decisions)) > 0.2:
         notes.append(
             f"{strange:.0%} of the windows are like nothing that was learned; is it the same finger (a model is one person's{whose}), "
@@ -228,7 +189,7 @@ def _facts(args: argparse.Namespace, content: Any, told: Sequence[Told], facts: 
         **facts,
         "simulated": bool(facts["simulated"] or content.made_from.get("simulated")),
         "model": args.model.name,
-        "participants": _participants(content),
+        "participants": participants_of(content),
         "window_s": facts["window_readings"] / content.model.rate_hz,
         "windows": len(told),
         "undecided": len(told) - len(decisions),
@@ -240,11 +201,6 @@ def _facts(args: argparse.Namespace, content: Any, told: Sequence[Told], facts: 
         "left_out": left_out,
         "notes": notes,
     }
-
-
-def _participants(content: Any) -> list[str]:
-    """Whose finger was learned, as far as somebody said."""
-    return [str(each) for each in content.made_from.get("participants") or [] if each]
 
 
 def _write(output: Path, told: Sequence[Told], names: list[str], result: dict[str, Any]) -> None:

@@ -30,6 +30,7 @@ def add_options(p: argparse.ArgumentParser) -> None:
         help="learn from this one's trials (needed where there are several, as fingers differ); all: from everybody's, far worse for each",
     )
     p.add_argument("--drive", metavar="HZ", type=steps.positive, help="the motor's frequency (default: found in each trial)")
+    p.add_argument("--rate", metavar="HZ", type=steps.positive, help="readings a second, where neither times nor count nor the logs say it")
     p.add_argument("-o", "--output", metavar="MODEL.npz", type=steps.named(".npz"), required=True, help="the model")
     p.add_argument("--json", action="store_true", help="print the result as one JSON object and nothing else")
     p.set_defaults(run=run)
@@ -43,13 +44,14 @@ def run(args: argparse.Namespace) -> int:
     from skinfab.files import require_place
     from skinfab.fingertip.nail.labels import read_trials
     from skinfab.fingertip.nail.model_file import NailFile, save_nail
+    from skinfab.fingertip.nail.prints import kept_of
     from skinfab.fingertip.nail.regress import Regression, learnable, targets_of
     from skinfab.fingertip.nail.train import WINDOW, judge, prepare, splits_of
 
     require_place(args.output)
     if args.output.exists() and args.output.samefile(args.labels):
         raise InputError(f"{args.output} is read and would be replaced; give another -o")
-    every, simulated, notes = read_trials(args.labels)
+    every, simulated, notes = read_trials(args.labels, rate_hz=args.rate)
     trials, across = _chosen(every, args.participant)
     made = prepare(trials, drive_hz=args.drive)
     splits = splits_of(trials, across=across)
@@ -85,6 +87,7 @@ def run(args: argparse.Namespace) -> int:
     kept = {key: result[key] for key in ("simulated", "labels", "participants", "trials", "held_out")}
     said = {trials[k].units_said for k in rows.tolist()}
     kept["units_said"] = said == {True}
+    kept["readings"] = [kept_of(trials[k].values) for k in rows.tolist()]
     kept["learned"] = _learned_from(trials, rows.tolist())
     save_nail(args.output, NailFile(model, regression, kept))
     result["file"] = str(args.output)

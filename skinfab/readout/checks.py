@@ -47,14 +47,21 @@ def check(recording: Recording) -> list[str]:
     return [*check_times(recording), *_channels(recording), *_forces(recording)]
 
 
-def check_times(recording: Recording) -> list[str]:
-    """What is wrong with its times alone: for who looks at the channels by himself."""
-    return [*_times(recording), *_missing(recording)] if len(recording) else []
+def check_times(recording: Recording, *, coarse: bool = False) -> list[str]:
+    """What is wrong with its times alone: for who looks at the channels by himself.
+
+    Parameters
+    ----------
+    recording : Recording
+    coarse : bool
+        The device's clock is known to be coarser than its frames: that times repeat, and what its single steps come to, is not told of.
+    """
+    return [*_times(recording, coarse), *_missing(recording)] if len(recording) else []
 
 
-def _times(recording: Recording) -> list[str]:
+def _times(recording: Recording, coarse: bool = False) -> list[str]:
     found = []
-    for name, time, strict in (("device time", recording.device_time, True), ("host time", recording.host_time, False)):
+    for name, time, strict in (("device time", recording.device_time, not coarse), ("host time", recording.host_time, False)):
         if bad := int(np.count_nonzero(~np.isfinite(time))):
             found.append(f"{bad:,} of {len(time):,} frames have no {name}")
         steps = np.diff(time)
@@ -67,7 +74,7 @@ def _times(recording: Recording) -> list[str]:
     nominal, steps = recording.stream.rate_hz, np.diff(recording.device_time)
     # Of frames that follow one another: lost ones are told elsewhere.
     steps = steps[(np.diff(recording.sequence) == 1) & (steps > 0)]
-    if nominal and len(steps):
+    if nominal and len(steps) and not coarse:
         rate = 1 / float(np.median(steps))
         if abs(rate - nominal) > RATE_PART * nominal:
             found.append(f"frames come at {rate:.4g} Hz, and the stream says {nominal:g}; check the device's clock")

@@ -260,3 +260,46 @@ def test_another_instrument_is_refused(logs: Path, model: Path, tmp_path: Path, 
     assert capsys.readouterr().out.startswith("nothing is decided: the windows are like nothing the model learned from")
     table = list(csv.DictReader(line for line in (tmp_path / "o/decisions.csv").read_text().splitlines() if line[0] != "#"))
     assert all((each["confidence"] == "") == (each["strange"] == "1") for each in table if each["label"])
+
+
+@pytest.fixture(scope="module")
+def plain(logs: Path) -> Path:
+    """The first participant's log saved anew by another program: the same readings in another file."""
+    lines = [line for line in (logs / "participant-1.csv").read_text().splitlines() if line[0] != "#"]
+    at = [lines[0].split(",").index(name) for name in ("device_time", "Ax", "Ay", "Az", "Gx", "Gy", "Gz")]
+    rows = [[float(line.split(",")[k]) for k in at] for line in lines[1:]]
+    path = logs / "plain.csv"
+    path.write_text("time_s,Ax,Ay,Az,Gx,Gy,Gz\n" + "\n".join(",".join(f"{v:.6f}" for v in row) for row in rows) + "\n")
+    return path
+
+
+def judged_on(model: Path, plain: Path, table: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> dict:  # type: ignore[type-arg]
+    (plain.parent / "l.csv").write_text("\n".join(line.replace("participant-1.csv", "plain.csv") for line in table) + "\n")
+    capsys.readouterr()
+    options = ["--labels", str(plain.parent / "l.csv"), "--every", "64", "-o", str(tmp_path / "o"), "--json"]
+    assert main(["nail", "run", str(model), str(plain), *options]) == 0
+    return json.loads(capsys.readouterr().out)  # type: ignore[no-any-return]
+
+
+def test_the_same_readings_in_another_file_do_not_judge(
+    logs: Path, model: Path, plain: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    table = (logs / "labels.csv").read_text().splitlines()
+    found = judged_on(model, plain, table, tmp_path, capsys)
+    assert (found["labels"]["trials"], found["labels"]["learned_from"]) == (12, 28)
+    assert any("model's logs declare the units, and this log does not" in note for note in found["notes"])
+
+
+def test_a_table_that_does_not_go_with_the_log_is_told(
+    logs: Path, model: Path, plain: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    head, *rows = (logs / "labels.csv").read_text().splitlines()[1:]
+    own = [row.split(",") for row in rows if row.startswith("participant-1.csv")]
+    late = [",".join([row[0], f"{float(row[1]) + 5:.6f}", f"{float(row[2]) + 5:.6f}", *row[3:]]) for row in own]
+    found = judged_on(model, plain, [head, *late], tmp_path, capsys)
+    assert found["labels"]["beyond"] == 28 and any(
+        "28 of the 40 rows of l.csv end after the log does, at 7.314 s, and count nowhere" in n for n in found["notes"]
+    )
+    name = next(row[3] for row in own if row[3] != "none")
+    found = judged_on(model, plain, [head, *(",".join(row).replace(f",{name},", ",thumb,") for row in own)], tmp_path, capsys)
+    assert "the model knows no thumb: 2 of the 12 trials can never be right" in found["notes"]

@@ -1,6 +1,7 @@
 """Logs with labels: a table that says from when to when, in which log, what was touched.
 
-A row a trial; the columns ``log``, ``start_s``, ``end_s`` and ``label`` must be there, the others may be: ``participant``, ``trial``,
+A row a trial; the columns ``log``, ``start_s``, ``end_s`` and ``label`` must be there (without an end a trial lasts as long as its log),
+the others may be: ``participant``, ``trial``,
 ``part`` (``train`` or ``test``), ``x_mm``, ``y_mm``, ``angle_deg``, ``force_n`` and, of a simulator, which knows it, where the pattern
 really lay: ``true_x_mm``, ``true_y_mm``, ``true_angle_deg``. Times count from the log's first frame. The label of no
 contact is ``none``. Lines that begin with ``#`` are remarks; a simulator says ``# simulated: true``.
@@ -12,7 +13,7 @@ import csv
 import io
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -20,9 +21,9 @@ from numpy.typing import NDArray
 
 from skinfab.errors import InputError
 from skinfab.files import atomic_write
-from skinfab.fingertip.nail.doubles import without_doubles
+from skinfab.fingertip.nail.doubles import without_copies, without_doubles
+from skinfab.fingertip.nail.pace import Pace, pace_of, places_of, times_of
 from skinfab.fingertip.nail.units import channel_columns, units_said
-from skinfab.readout.checks import check_times
 from skinfab.readout.frame import Recording
 from skinfab.readout.logs.log import read_log
 from skinfab.spreadsheet import read_csv_lines
@@ -38,6 +39,8 @@ MAX_BYTES = 50_000_000
 _MOST_PLACES = 20
 
 _NEEDED = ("log", "start_s", "end_s", "label")
+_FILLED = ("log", "start_s", "label")
+_PARTS = ("", "train", "test")
 _WORDS = ("log", "label", "participant", "trial", "part")
 _TRUE = ("true_x_mm", "true_y_mm", "true_angle_deg")
 _COLUMNS = ("log", "start_s", "end_s", "label", "participant", "trial", "part", "x_mm", "y_mm", "angle_deg", "force_n", *_TRUE)
@@ -52,7 +55,7 @@ class Label:
     log : str
         Name of the log's file, beside the table.
     start_s, end_s : float
-        From the log's first frame on.
+        From the log's first frame on; the end is infinite where the table leaves it to the log.
     label : str
         The class; `NOTHING` for no contact.
     participant, trial, part : str
@@ -117,7 +120,7 @@ def write_labels(path: str | Path, labels: Sequence[Label], *, simulated: bool) 
     rows.writerow(_COLUMNS)
     for each in labels:
         cells = (getattr(each, name) for name in _COLUMNS)
-        rows.writerow([cell if isinstance(cell, str) else "" if math.isnan(cell) else f"{cell:.9g}" for cell in cells])
+        rows.writerow([cell if isinstance(cell, str) else f"{cell:.9g}" if math.isfinite(cell) else "" for cell in cells])
     atomic_write(path, text.getvalue())
 
 
@@ -140,6 +143,10 @@ def read_labels(path: str | Path) -> tuple[list[Label], bool]:
     head = [name.strip() for name in rows[0]] if rows else []
     if missing := [name for name in _NEEDED if name not in head]:
         raise InputError(f"{path} has no column {missing[0]!r}; a table of labels needs {', '.join(_NEEDED)}")
+    if delimiter != ",":  # as spreadsheets write it that have a decimal comma
+        rows[1:] = [
+            [cell.replace(",", ".") if name not in _WORDS else cell for name, cell in zip(head, row, strict=False)] for row in rows[1:]
+        ]
     labels = [_label(dict(zip(head, row, strict=False)), f"{path}, line {k}") for (k, _), row in zip(body[1:], rows[1:], strict=False)]
     if not labels:
         raise InputError(f"{path} has headings and no rows; a row says which log holds what, from when to when")
@@ -147,13 +154,17 @@ def read_labels(path: str | Path) -> tuple[list[Label], bool]:
 
 
 def _label(cells: dict[str, str], where: str) -> Label:
-    if any(not cells.get(name, "").strip() for name in _NEEDED):
-        raise InputError(f"{where}: {', '.join(_NEEDED)} must all be there")
+    if any(not cells.get(name, "").strip() for name in _FILLED):
+        raise InputError(f"{where}: {', '.join(_FILLED)} must all be there")
     words = {name: cells.get(name, "").strip() for name in _WORDS}
     # Spreadsheets make capitals of their own: "Test" taken for training would flatter the model.
     words["part"] = words["part"].lower()
     words["label"] = NOTHING if words["label"].lower() == NOTHING else words["label"]
+    if words["part"] not in _PARTS:
+        raise InputError(f"{where}: part {words['part']!r} is neither train nor test; write one of them, or leave it empty")
     numbers = {name: _number(cells.get(name, ""), f"{where}, {name}") for name in _COLUMNS if name not in _WORDS}
+    if math.isnan(numbers["end_s"]):
+        numbers["end_s"] = math.inf
     if not 0 <= numbers["start_s"] < numbers["end_s"]:
         raise InputError(f"{where}: {numbers['start_s']:g} to {numbers['end_s']:g} s is no time of a log; the start must be before the end")
     return Label(**words, **numbers)  # type: ignore[arg-type]
@@ -172,16 +183,22 @@ def _number(cell: str, where: str) -> float:
     return value
 
 
-def read_trials(path: str | Path) -> tuple[list[Trial], bool, list[str]]:
+def read_trials(path: str | Path, *, rate_hz: float | None = None) -> tuple[list[Trial], bool, list[str]]:
     """The trials of a table, whether they are simulated, and what is to be said of them.
 
     A frame that was lost is a row of NaN in its place: closing up would make the motor's phase jump.
 
+    Parameters
+    ----------
+    path : path
+    rate_hz : float, optional
+        Readings a second, where the logs do not say.
+
     Raises
     ------
     InputError
-        As `read_labels` and `without_doubles`; a log cannot be read, has none of the channels, ends before a trial does, or lacks most
-        of one.
+        As `read_labels`, `pace_of`, `without_doubles` and `without_copies`; a log cannot be read, has none of the channels, ends before a
+        trial does, or lacks most of one.
     """
     path = Path(path)
     labels, simulated = read_labels(path)
@@ -192,25 +209,39 @@ def read_trials(path: str | Path) -> tuple[list[Trial], bool, list[str]]:
             log = read_log(path.parent / each.log)
             notes += [f"{log.file}: {note}" if log.file not in note else note for note in log.notes]
             simulated |= log.recording.stream.simulated
-            time, values, bad, rate = _evenly(log.recording)
-            logs[each.log] = (time - time[0], values, bad, rate, log.sha256, units_said(log.recording.stream))
-            notes += [f"{log.file}: {wrong}" for wrong in check_times(log.recording)]
+            pace = pace_of(log.recording, rate_hz=rate_hz)
+            logs[each.log] = (*evenly(log.recording, pace), pace.rate_hz, log.sha256, units_said(log.recording.stream))
+            notes += [f"{log.file}: {wrong}" for wrong in pace.notes]
         time, values, bad, rate, sha256, said = logs[each.log]
-        first, last = np.searchsorted(time, [each.start_s - 0.5 / rate, each.end_s - 0.5 / rate])
-        if last - first < 2 or time[-1] < each.end_s - 1.5 / rate:
+        whole = to_the_end(each, time, rate)
+        rows = rows_of(whole, time, rate)
+        if rows is None:
             raise InputError(
-                f"{path}: {each.log} ends at {time[-1]:.3f} s and a trial of it lasts from {each.start_s:g} to {each.end_s:g} s; "
+                f"{path}: {each.log} ends at {time[-1]:.3f} s and a trial of it lasts from {whole.start_s:g} to {whole.end_s:g} s; "
                 "give the whole log, or mend the table"
             )
-        there = np.isfinite(values[first:last]).any(axis=1)
+        there: NDArray[np.bool_] = np.asarray(np.isfinite(values[rows]).any(axis=1))
         if there.mean() < 0.5:
             raise InputError(
-                f"{path}: {each.log} has {there.sum()} of the {last - first} readings of its trial from {each.start_s:g} to "
-                f"{each.end_s:g} s; leave that row out, or record the trial again"
+                f"{path}: {each.log} has {there.sum()} of the {len(there)} readings of its trial from {whole.start_s:g} to "
+                f"{whole.end_s:g} s; leave that row out, or record the trial again"
             )
-        trials.append(Trial(each, values[first:last], bad[first:last], rate, sha256, said))
-    rows, doubled = without_doubles(labels, [each.sha256 for each in trials], path)
-    return [trials[k] for k in rows], simulated, notes + doubled
+        trials.append(Trial(whole, values[rows], bad[rows], rate, sha256, said))
+    kept, doubled = without_doubles([each.label for each in trials], [each.sha256 for each in trials], path)
+    trials = [trials[k] for k in kept]
+    kept, copied = without_copies([each.label for each in trials], [each.values for each in trials], path)
+    return [trials[k] for k in kept], simulated, notes + doubled + copied
+
+
+def to_the_end(label: Label, time: FloatArray, rate_hz: float) -> Label:
+    """The label with the end of its log, where the table leaves it to that; of readings at these times."""
+    return label if math.isfinite(label.end_s) else replace(label, end_s=float(time[-1]) + 1 / rate_hz)
+
+
+def rows_of(label: Label, time: FloatArray, rate_hz: float) -> slice | None:
+    """Which of the readings at these times are the trial's; None where it begins or ends after the log's end."""
+    first, last = np.searchsorted(time, [label.start_s - 0.5 / rate_hz, label.end_s - 0.5 / rate_hz])
+    return None if last - first < 2 or time[-1] < label.end_s - 1.5 / rate_hz else slice(int(first), int(last))
 
 
 def six_channels(recording: Recording) -> tuple[FloatArray, NDArray[np.bool_]]:
@@ -230,58 +261,17 @@ def six_channels(recording: Recording) -> tuple[FloatArray, NDArray[np.bool_]]:
     return values, saturated
 
 
-def places_of(recording: Recording, rate_hz: float) -> IntArray:
-    """Which place in an even row of readings each frame has: by the device's count, or by its times where that shows nothing lost.
-
-    A plain table has no count of its own. Times that lie in bunches say when frames were fetched, and are not used.
-
-    Parameters
-    ----------
-    recording : Recording
-    rate_hz : float
-
-    Returns
-    -------
-    (n,) int
-        From 0; not above its predecessor where a device began anew.
-    """
-    count: IntArray = recording.sequence - recording.sequence[:1]
-    if (np.diff(count) != 1).any():
-        return count
-    steps = np.diff(recording.device_time) * rate_hz
-    if not np.isfinite(steps).all() or (steps < 0.5).any():
-        return count
-    places: IntArray = np.concatenate([[0], np.cumsum(np.rint(steps).astype(np.int64))])
-    return places
-
-
-def _evenly(recording: Recording) -> tuple[FloatArray, FloatArray, NDArray[np.bool_], float]:
-    """Times, readings and which are saturated, with a row for each frame that was lost, and how many come a second."""
-    rate = rate_of(recording)
+def evenly(recording: Recording, pace: Pace) -> tuple[FloatArray, FloatArray, NDArray[np.bool_]]:
+    """Times from the first frame on, readings and which are saturated, with a row for each frame that was lost."""
     values, bad = six_channels(recording)
     timed = np.isfinite(recording.device_time)
-    time, values, bad, places = recording.device_time[timed], values[timed], bad[timed], places_of(recording, rate)[timed]
+    every = places_of(recording, pace)
+    time, values, bad, places = times_of(recording, every, pace)[timed], values[timed], bad[timed], every[timed]
     if (np.diff(places) < 1).any() or places[-1] - places[0] > _MOST_PLACES * len(places):
-        return time, values, bad, rate
+        return time, values, bad
     at = places - places[0]
     rows = np.full((int(at[-1]) + 1, 6), np.nan)
     rows[at] = values
     saturated = np.zeros(rows.shape, dtype=bool)
     saturated[at] = bad
-    return np.interp(np.arange(len(rows)), at, time), rows, saturated, rate
-
-
-def rate_of(recording: Recording) -> float:
-    """Frames a second: by the times, which know better than what was written on the box.
-
-    Raises
-    ------
-    InputError
-        There are too few frames, or their times do not rise.
-    """
-    time = recording.device_time[np.isfinite(recording.device_time)]
-    steps = np.diff(time)
-    if len(steps) < 1 or not np.median(steps) > 0:
-        raise InputError(f"stream {recording.stream.name}: {len(time)} frames with times that do not rise give no rate; record some more")
-    # A mean without the gaps: the median alone would be rounded as coarsely as the device's clock.
-    return float(1 / steps[steps < 1.5 * np.median(steps)].mean())
+    return np.interp(np.arange(len(rows)), at, time), rows, saturated

@@ -16,7 +16,8 @@ from skinfab.errors import InputError
 from skinfab.fingertip.nail.classify import NailModel
 from skinfab.fingertip.nail.frozen import without_frozen
 from skinfab.fingertip.nail.histogram_model import HistogramModel
-from skinfab.fingertip.nail.labels import places_of, rate_of, six_channels
+from skinfab.fingertip.nail.labels import six_channels
+from skinfab.fingertip.nail.pace import Pace, pace_of, places_of, times_of
 from skinfab.fingertip.nail.phasors import FIND_SHORTEST, SHORTEST, find_drive, turns
 from skinfab.fingertip.nail.reader import Decision, Reader
 from skinfab.fingertip.nail.regress import Continuous, Regression
@@ -210,22 +211,35 @@ class NailWatch:
 
 
 def decide_log(
-    model: NailModel | HistogramModel, recording: Recording, *, samples: int, every: int, regression: Regression | None = None
+    model: NailModel | HistogramModel,
+    recording: Recording,
+    *,
+    samples: int,
+    every: int,
+    regression: Regression | None = None,
+    pace: Pace | None = None,
 ) -> tuple[list[Told], int]:
     """Decisions on a log, and how many frames were missing in it.
+
+    Parameters
+    ----------
+    model, recording, samples, every, regression
+        As of `NailWatch`.
+    pace : Pace, optional
+        From `pace_of`; found where it is left out.
 
     Raises
     ------
     InputError
-        As `NailWatch`.
+        As `NailWatch` and `pace_of`.
     """
-    rate = rate_of(recording)
-    watch = NailWatch(model, recording.stream, samples=samples, every=every, regression=regression, rate_hz=rate)
+    pace = pace or pace_of(recording)
+    watch = NailWatch(model, recording.stream, samples=samples, every=every, regression=regression, rate_hz=pace.rate_hz)
     values, saturated = six_channels(recording)
     if not isinstance(model, HistogramModel):
         values = np.where(saturated, np.nan, values)
-    time = recording.device_time - recording.device_time[np.isfinite(recording.device_time)][0]
-    rows = zip(values, places_of(recording, rate).tolist(), time.tolist(), strict=True)
+    places = places_of(recording, pace)
+    rows = zip(values, places.tolist(), times_of(recording, places, pace).tolist(), strict=True)
     told = [made for row, sequence, at in rows if (made := watch.take(row, sequence, at)) is not None]
     known = next((k for k, each in enumerate(told) if each.turning is not None), 0)
     if told and told[known].turning is False:  # nor did it turn before that could be told

@@ -22,6 +22,7 @@ from skinfab.fingertip.nail.model_file import class_names
 from skinfab.fingertip.nail.phasors import BLOCK, FIND_SHORTEST, ComplexArray, find_drive, lock_in, reference_of, turned_phasors
 from skinfab.fingertip.nail.published import modes
 from skinfab.fingertip.nail.regress import Regression, angle_apart, continuous_of, learnable, targets_of
+from skinfab.fingertip.nail.touches import touches_of
 from skinfab.fingertip.nail.units import CHANNELS
 from skinfab.fingertip.splits import Split, group_folds, leave_one_out
 
@@ -136,7 +137,7 @@ def prepare(trials: Sequence[Trial], *, drive_hz: float | None = None) -> Prepar
     names = class_names([trial.label.label for trial in trials])
     classes = np.array([names.index(trial.label.label) for trial in trials])
     drive, noise = np.concatenate([one for one, _ in each]), np.concatenate([one for _, one in each])
-    return Prepared(tuple(trials), names, classes, drive, noise, drives, rate, tuple(_notes(trials, names, classes, drive)))
+    return Prepared(tuple(trials), names, classes, drive, noise, drives, rate, tuple(_notes(trials, names, drive)))
 
 
 def _drive(trial: Trial, values: FloatArray, rate: float) -> float:
@@ -149,8 +150,8 @@ def _drive(trial: Trial, values: FloatArray, rate: float) -> float:
     return found
 
 
-def _notes(trials: Sequence[Trial], names: tuple[str, ...], classes: IntArray, drive: ComplexArray) -> list[str]:
-    notes = []
+def _notes(trials: Sequence[Trial], names: tuple[str, ...], drive: ComplexArray) -> list[str]:
+    notes = touches_of([each.label for each in trials])[1]
     there = np.isfinite(drive).all(axis=0)
     if not there.all():
         gone = ", ".join(np.array(CHANNELS)[~there])
@@ -161,9 +162,10 @@ def _notes(trials: Sequence[Trial], names: tuple[str, ...], classes: IntArray, d
             notes.append(
                 f"channel {name} is at the end of its range in {part:.1%} of the readings, which are left out; choose a wider range"
             )
-    counts = np.bincount(classes, minlength=len(names))
-    if (few := int(counts.min())) < _FEW:
-        notes.append(f"class {names[int(counts.argmin())]!r} has {few} {'trial' if few == 1 else 'trials'}; five a class are better by far")
+    touches = _touches(trials)
+    rarest = min(touches, key=lambda name: touches[name])
+    if (few := touches[rarest]) < _FEW:
+        notes.append(f"class {rarest!r} has {few} {'trial' if few == 1 else 'trials'}; five a class are better by far")
     if NOTHING not in names:
         notes.append(f"no trial is without contact (labelled {NOTHING!r}), so every window will be taken for a contact; record some")
     return notes
@@ -188,18 +190,28 @@ def splits_of(trials: Sequence[Trial], *, across: bool) -> list[Split]:
     test = np.array([each.label.part == "test" for each in trials])
     if test.any() and not test.all():
         return [(np.flatnonzero(~test), np.flatnonzero(test))]
+    groups = _groups(trials)
     labels = [each.label.label for each in trials]
-    rarest = min(dict.fromkeys(labels), key=labels.count)
-    if (least := labels.count(rarest)) < 2:
+    touches = _touches(trials)
+    rarest = min(touches, key=lambda name: touches[name])
+    if touches[rarest] < 2:
         raise InputError(
             f"class {rarest!r} has a single trial, so that none can be held out to say how good the model is; record another one"
         )
-    return group_folds(_groups(trials), k=min(FOLDS, least), strata=labels)
+    return group_folds(groups, k=min(FOLDS, touches[rarest]), strata=labels)
+
+
+def _touches(trials: Sequence[Trial]) -> dict[str, int]:
+    """How often each class was touched."""
+    groups: dict[str, set[str]] = {}
+    for each, name in zip(trials, _groups(trials), strict=True):
+        groups.setdefault(each.label.label, set()).add(name)
+    return {name: len(of) for name, of in groups.items()}
 
 
 def _groups(trials: Sequence[Trial]) -> list[str]:
-    """What is held out as a whole: trials of one name, or each row for itself where they have none."""
-    return [f"{each.label.participant}/{each.label.trial or k}" for k, each in enumerate(trials)]
+    """What is held out as a whole."""
+    return touches_of([each.label for each in trials])[0]
 
 
 def judge(made: Prepared, splits: Sequence[Split], *, samples: int | None = WINDOW, published: bool = False, across: bool = False) -> Held:

@@ -65,6 +65,23 @@ def units_said(stream: Stream) -> bool:
     return all(stream.channels[k].unit for k, _ in channel_columns(stream) if k >= 0)
 
 
+def units_note(learned: bool | None, stream: Stream, what: str) -> list[str]:
+    """What is to be said where either the model's logs or this stream do not declare their units: a sentence, or nothing.
+
+    Parameters
+    ----------
+    learned : bool, optional
+        Did the model's logs declare them? None where the model does not say.
+    stream : Stream
+    what : str
+        ``log`` or ``stream``.
+    """
+    if learned is None or learned == units_said(stream):
+        return []
+    one, other = ("model's logs declare", f"this {what} does not") if learned else (f"{what} declares", "the model's logs did not")
+    return [f"the {one} the units, and {other}: what says nothing is taken for G and deg/s, and wrong in other units"]
+
+
 def _scale(name: str, unit: str, stream: str) -> float:
     if not unit:
         return 1.0

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from skinfab.errors import InputError
-from skinfab.fingertip.nail.labels import Label, rate_of, read_labels, read_trials, write_labels
+from skinfab.fingertip.nail.labels import Label, read_labels, read_trials, write_labels
 from skinfab.readout.frame import Channel, Recording, Stream
 from skinfab.readout.logs.log import write_log
 
@@ -68,7 +68,8 @@ def test_columns_in_any_order_and_of_any_spreadsheet(tmp_path: Path) -> None:
     [
         ("log,start_s,end_s\na,0,1\n", "no column 'label'"),
         ("log,start_s,end_s,label\n", "headings and no rows"),
-        ("log,start_s,end_s,label\na,0,,x\n", "line 2: log, start_s, end_s, label must all be there"),
+        ("log,start_s,end_s,label\na,,1,x\n", "line 2: log, start_s, label must all be there"),
+        ("log,start_s,end_s,label,part\na,0,1,x,train\na,1,2,x,holdout\n", "line 3: part 'holdout' is neither train nor test"),
         ("log,start_s,end_s,label\na,1,1,x\n", "start must be before the end"),
         ("log,start_s,end_s,label\na,-1,1,x\n", "no time of a log"),
         ("# simulated: true\nlog,start_s,end_s,label\na,0,soon,x\n", "line 3, end_s: 'soon' is no number"),
@@ -106,7 +107,7 @@ def test_any_table_is_read_or_refused(tmp_path_factory: pytest.TempPathFactory, 
     labels: list[Label] = []
     with contextlib.suppress(InputError):
         labels, _ = read_labels(path)
-    assert all(0 <= each.start_s < each.end_s < math.inf and each.log and each.label for each in labels)
+    assert all(0 <= each.start_s < each.end_s and each.start_s < math.inf and each.log and each.label for each in labels)
 
 
 def test_frames_without_a_time_are_none(table: Path) -> None:
@@ -115,15 +116,6 @@ def test_frames_without_a_time_are_none(table: Path) -> None:
     write_log(Recording.of_values(STREAM, np.ones((300, 3)), device_time=time, host_time=np.zeros(300)), table.parent / "a.csv")
     trials, _, _ = read_trials(table)
     assert [len(each.values) for each in trials] == [100, 100] and np.flatnonzero(np.isnan(trials[0].values[:, 0])).tolist() == [6]
-
-
-def test_a_rate_from_times() -> None:
-    time = np.round(np.arange(1000) / 1400, 3)  # a clock of whole milliseconds
-    time[500:] += 3.0
-    recording = Recording.of_values(Stream("s", (Channel("Ax"),)), np.zeros((1000, 1)), device_time=time)
-    assert rate_of(recording) == pytest.approx(1400, rel=0.01)
-    with pytest.raises(InputError, match="give no rate"):
-        rate_of(Recording.of_values(Stream("s", (Channel("Ax"),)), np.zeros((3, 1)), device_time=np.zeros(3)))
 
 
 @pytest.mark.parametrize("counted", [True, False])
@@ -158,3 +150,37 @@ def test_a_trial_in_a_hole_is_told(tmp_path: Path) -> None:
 def test_capitals_of_a_spreadsheet(tmp_path: Path) -> None:
     (tmp_path / "l.csv").write_text("log,start_s,end_s,label,part\na.csv,0,1,None,Test\na.csv,1,2,Edge,TRAIN\n")
     assert [(each.label, each.part) for each in read_labels(tmp_path / "l.csv")[0]] == [("none", "test"), ("Edge", "train")]
+
+
+def test_without_an_end_a_trial_lasts_as_long_as_its_log(table: Path) -> None:
+    table.write_text("log,start_s,end_s,label\na.csv,0.1,,pin\n")
+    ((trial,), _, _) = read_trials(table)
+    assert len(trial.values) == 160 and trial.label.end_s == pytest.approx(300 / 1400)
+    write_labels(table, read_labels(table)[0], simulated=True)
+    assert math.isinf(read_labels(table)[0][0].end_s)
+
+
+def test_a_decimal_comma_behind_semicolons(tmp_path: Path) -> None:
+    (tmp_path / "l.csv").write_text("log;start_s;end_s;label;x_mm\na,b.csv;0,365714286;0,7;pin, small;-1,5\n")
+    (only,), _ = read_labels(tmp_path / "l.csv")
+    assert (only.log, only.start_s, only.end_s, only.label, only.x_mm) == ("a,b.csv", 0.365714286, 0.7, "pin, small", -1.5)
+
+
+def test_the_same_readings_in_another_file_count_once(tmp_path: Path) -> None:
+    """Saved anew as a plain table with fewer decimals, from later on: another file, another start, the same readings."""
+    values = np.random.default_rng(0).normal(size=(300, 3))
+    values = np.round(values, 6)
+    write_log(Recording.of_values(STREAM, values, device_time=np.arange(300) / 1400), tmp_path / "a.csv")
+    rows = [f"{k / 1400:.5f},{v[2]:.4f},{v[1]:.4f},{v[0]:.4f}" for k, v in enumerate(values)][40:]
+    (tmp_path / "b.csv").write_text("time_s,Ax,Ay,Az\n" + "\n".join(rows) + "\n")
+    own, again = Label("a.csv", 100 / 1400, 0.2, "pin"), Label("b.csv", 60 / 1400, 0.2 - 40 / 1400, "pin")
+    write_labels(tmp_path / "l.csv", [own, again, Label("a.csv", 0.0, 100 / 1400, "pin")], simulated=True)
+    trials, _, notes = read_trials(tmp_path / "l.csv")
+    assert [each.label.log for each in trials] == ["a.csv", "a.csv"]
+    assert "l.csv: 1 row is there twice, and counts once (the same readings in another file)" in notes
+    write_labels(tmp_path / "l.csv", [own, replace(again, part="test")], simulated=True)
+    with pytest.raises(InputError, match="have the same readings, with part '' and 'test'; leave one of the rows out"):
+        read_trials(tmp_path / "l.csv")
+    write_labels(tmp_path / "l.csv", [own, replace(again, start_s=0.0, end_s=0.1)], simulated=True)
+    with pytest.raises(InputError, match="of their readings in common, which would judge a model that knows them"):
+        read_trials(tmp_path / "l.csv")

@@ -88,3 +88,16 @@ def test_what_cannot_be_learned(pins: list[Trial]) -> None:
     single = [next(each for each in pins if each.label.label == name) for name in dict.fromkeys(each.label.label for each in pins)]
     with pytest.raises(InputError, match="single trial"):
         splits_of(single, across=False)
+
+
+def test_parts_of_a_touch_without_a_name_are_held_out_together(pins: list[Trial]) -> None:
+    """Cut in two and without names: as one touch each, not as one that the model knows half of."""
+    halves = []
+    for k, each in enumerate(pins):
+        for j in range(2):
+            label = replace(each.label, log="a.csv", trial="", start_s=k + 0.1 * j, end_s=k + 0.1 * (j + 1))
+            halves.append(replace(each, label=label, values=each.values[128 * j :][:128], saturated=each.saturated[128 * j :][:128]))
+    splits = splits_of(halves, across=False)
+    assert all({k // 2 for k in train}.isdisjoint(k // 2 for k in test) for train, test in splits)
+    notes = prepare(halves, drive_hz=169.0).notes
+    assert any("taken for 28 touches, where those of one label" in note for note in notes) and any("has 4 trials" in note for note in notes)
