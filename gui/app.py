@@ -24,6 +24,7 @@ from gui.desk import Desk
 from gui.dialogs.colours import colour_dialogs
 from gui.dialogs.dialogs import Dialogs
 from gui.drop import accept_files
+from gui.ending import heeding_signals
 from gui.jobs.background import Background
 from gui.jobs.runner import Runner
 from gui.jobs.sweep import Sweep
@@ -367,7 +368,8 @@ def run(path: Path | None = None) -> None:
         raise InputError(f"there is no screen to open a window on ({fault}); set DISPLAY, or use the commands without a window") from fault
     app = App(root, path)
     try:
-        root.mainloop()
+        with heeding_signals(root, app.abandon):
+            root.mainloop()
     except KeyboardInterrupt:
         app.interrupted = True
         app.abandon()

@@ -24,7 +24,12 @@ def make_modal(window: tk.Toplevel, master: tk.Misc, first: tk.Misc) -> None:
     """Show a dialog with the focus on `first`, and wait until it is gone."""
     window.transient(master.winfo_toplevel())
     place_over(window, master)
-    window.wait_visibility()
+    try:
+        window.wait_visibility()
+    except tk.TclError:
+        if window.winfo_exists():
+            raise
+        return  # closed before it was seen
     window.grab_set()
     first.focus_set()
     window.wait_window()

@@ -87,6 +87,12 @@ class Watched(gui.app.App):
             return root.after(50, self.work, root)
         self.session.do("another seed", replace(self.session.skin, seed=42))
         self.autosave.settle()
+        if "asking" in sys.argv:
+            root.after(0, self.close)
+        self.wait(root)
+    def wait(self, root):
+        if "asking" in sys.argv and "question" not in root.children:
+            return root.after(20, self.wait, root)
         print("kept", flush=True)
 gui.app.App = Watched
 from gui.dialogs.open_mesh import MeshChoice
@@ -98,11 +104,11 @@ if __name__ == "__main__":
 
 
 # What SIGKILL leaves is seen in tests/gui/e2e/test_trouble.py.
-@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
-def test_whatever_ends_it_the_work_is_there_at_the_next_start(tmp_path, display, number):
+@pytest.mark.parametrize(("number", "asking"), [(signal.SIGTERM, "asking"), (signal.SIGINT, "")])
+def test_whatever_ends_it_the_work_is_there_at_the_next_start(tmp_path, display, number, asking):
     (tmp_path / "work.py").write_text(WORK)
     environment = os.environ | {"SKINFAB_STATE": str(tmp_path / "state"), "PYTHONPATH": str(ROOT), "DISPLAY": display}
-    command = [sys.executable, str(tmp_path / "work.py"), str(ROOT / "meshes" / "cube.obj")]
+    command = [sys.executable, str(tmp_path / "work.py"), str(ROOT / "meshes" / "cube.obj"), asking]
     process = subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     assert process.stdout.readline() == "kept\n", process.stderr.read()
     began = time.monotonic()
