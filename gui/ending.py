@@ -66,8 +66,8 @@ def heeding_signals(root: tk.Tk, end: Callable[[], None]) -> Iterator[None]:
     finally:
         for number, handler in ours.items():
             signal.signal(number, handler)
-        for number in came:
-            signal.raise_signal(number)
+        for told in came:
+            signal.raise_signal(told)
 
 
 def close_question(root: tk.Tk) -> bool:

@@ -88,10 +88,14 @@ def test_a_question_about_what_would_be_overwritten_is_closed_too(window):
 def test_a_loop_that_stands_still_is_interrupted_by_the_second(window, monkeypatch):
     monkeypatch.setattr(ending, "STUCK_S", 0.02)
     reached = []
-    with pytest.raises(KeyboardInterrupt), heeding_signals(window, window.quit):
+
+    def stand_still():
         for _ in range(2):
             os.kill(os.getpid(), signal.SIGTERM)
             reached.append(time.sleep(0.05))
+
+    with pytest.raises(KeyboardInterrupt), heeding_signals(window, window.quit):
+        stand_still()
     assert len(reached) == 1
 
 
