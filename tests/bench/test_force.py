@@ -1,14 +1,17 @@
 """The chart of contacts: what is measured is what it says, and its sentence holds nothing that its table does not."""
 
 import itertools
+import json
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from skinfab.bench import force
+from skinfab.bench import force, force_ablation, force_touch
 from skinfab.bench.flatten import read_csv, write_csv
 from skinfab.bench.force_chart import draw
+from skinfab.cli.main import main
 from skinfab.fingertip.force.contact import LEAST_FORCE_N, locate
 
 
@@ -57,3 +60,19 @@ def test_the_sentence_and_the_chart_come_from_the_table(rows: list, events: list
     assert "12.34 mm" in said and "simulated" in said
     draw(table, judged, tmp_path / "a.png")
     assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_the_command_writes_every_table(
+    rows: list, events: list, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(force, "measure", lambda **_: rows)
+    monkeypatch.setattr(force, "judge_events", lambda **_: events)
+    monkeypatch.setattr(force_ablation, "motions_without", partial(force_ablation.motions_without, grasps=1))
+    some = {"all defects": force_touch.DEFECTS["all defects"]}
+    monkeypatch.setattr(force_touch, "measure", partial(force_touch.measure, defects=some, touches=(6,), sensors=1))
+    assert main(["force", "bench", "contact", "-o", str(tmp_path / "out"), "--json"]) == 0
+    said = json.loads(capsys.readouterr().out)
+    assert said["simulated"] and said["contact"]["touches"][0]["touches"] == 6 and len(said["contact"]["events"]) == len(events)
+    names = ("force.csv", "force.png", "force.txt", "force_ablation.csv", "force_events.csv", "force_touches.csv")
+    assert sorted(Path(each).name for each in said["files"]) == sorted(each.name for each in (tmp_path / "out").iterdir()) == list(names)
+    assert {row["without"] for row in read_csv(tmp_path / "out" / "force_ablation.csv")} == set(force_ablation.MOTION_TERMS)
