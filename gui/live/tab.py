@@ -240,7 +240,9 @@ class LiveTab(ttk.Frame):
         self._newest = news.newest
         quiet = silent(status, paused=self._standing(feed) != "")
         touched = {} if quiet else _read(news.touched, news.newest, stream)
-        self.lights.show(lights_of(touched, stream.names, self._sensors))
+        # Lights stand still with the rows; those of a source that is gone are off, as is said of them.
+        lit = touched if self._held is None or quiet else self._held.now.touched
+        self.lights.show(lights_of(lit, stream.names, self._sensors))
         last = float(self.ring.time[-1]) if len(self.ring) else 0.0
         angle = math.nan if news.reading is None else news.reading.angle
         self._last = _Shown(Now(last, self.row.range_s, news.newest, touched, angle, quiet), news.reading)
@@ -303,7 +305,7 @@ class LiveTab(ttk.Frame):
         watch = feed.watch
         if watch is None or not watch.contact or not any(self._sensors) or status.stream is None or status.state != "running":
             return ""
-        parts = ["simulated"] * status.stream.simulated
+        parts = ["paused"] * (self._held is not None) + ["simulated"] * status.stream.simulated
         if isinstance(feed.choice, LogChoice):
             parts.append(f"log {feed.choice.name}")
         return "contacts: " + ", ".join(parts) if parts else ""
@@ -337,8 +339,9 @@ class LiveTab(ttk.Frame):
             self._name_channels()
 
     def _pause(self, paused: bool) -> None:
-        """Curves, colours and readings stand still; what comes is kept, recorded and lit in the views all the same."""
+        """Curves, colours, readings and lights stand still; what comes is kept and recorded all the same."""
         self._held = self._last if paused else None
+        self._said_at = 0.0  # the views say at once that their lights are of then
 
     def _toggle(self) -> None:
         if self.log_row.player is not None:

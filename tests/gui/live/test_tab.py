@@ -275,6 +275,21 @@ def test_paused_the_plots_stand_still_and_reading_goes_on(window):
     window.until(lambda: tick_places(tab) != ticks)
 
 
+def test_paused_the_lights_stand_still_and_say_so(window):
+    tab = window.tab
+    with hand(rate_hz=400.0) as device:
+        tab.choose(PortChoice(str(device.path)))
+        window.until(lambda: set(tab.lights.lit) == {"C1"})
+        tab.row.hold.invoke()
+        held = dict(tab.lights.lit)
+        window.until(lambda: tab._last.now.touched == {})
+        assert tab.lights.lit == held and set(held) == {"C1"}
+        window.until(lambda: {n["text"] for n in tab.lights._notes if n.winfo_ismapped()} == {"contacts: paused"})
+        tab.row.hold.invoke()
+        window.until(lambda: "C1" not in tab.lights.lit)
+        window.until(lambda: not tab.lights._notes[0].winfo_ismapped())
+
+
 def test_what_cannot_be_opened_is_a_sentence_and_the_window_lives(window, tmp_path):
     for choice, says in (
         (PortChoice("/dev/nowhere"), "there is no port /dev/nowhere"),
