@@ -1,10 +1,13 @@
-"""`skinfab array`: simulate, train, run on logs and on a port, bench, and the ways in which it is used wrongly."""
+"""`skinfab array`: the commands of docs/array.md, logs and a port, bench, and the ways in which it is used wrongly."""
 
 import contextlib
 import csv
 import io
 import json
 import math
+import re
+import shlex
+import shutil
 from functools import partial
 from pathlib import Path
 
@@ -12,7 +15,7 @@ import numpy as np
 import pytest
 
 from skinfab.bench import array as bench
-from skinfab.cli.main import main
+from skinfab.cli.main import build_parser, main
 from skinfab.fingertip.array.geometry import Geometry
 from skinfab.fingertip.array.learn import load_array
 from skinfab.fingertip.array.protocols import presses, twirl
@@ -21,20 +24,44 @@ from skinfab.readout.frame import Recording
 from skinfab.readout.logs.log import read_log, write_log
 from skinfab.readout.pty_server import PtyServer
 
+PAGE = Path(__file__).parents[2] / "docs/array.md"
 RUN = ["array.png", "events.csv", "frames.csv", "result.json"]
 TRAIN = ["errors.csv", "model.npz", "result.json", "train.png"]
 
 
+def commands() -> list[list[str]]:
+    """The page's, without `skinfab`."""
+    (block,) = re.findall(r"```\n(skinfab array simulate.*?)```", PAGE.read_text(), re.DOTALL)
+    return [shlex.split(line, comments=True)[1:] for line in block.splitlines()]
+
+
 @pytest.fixture(scope="module")
 def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Logs of one simulated array, and its model."""
+    """Logs of one simulated array, its model, and what a log of it says: by the page's commands, of fewer and shorter logs."""
     folder = tmp_path_factory.mktemp("array")
-    assert main(["array", "simulate", "--logs", "2", "--contacts", "12", "--seed", "4", "-o", str(folder / "sim"), "--json"]) == 0
-    logs = [str(folder / "sim" / name) for name in ("presses-1.csv", "presses-2.csv", "rods-1.csv")]
-    with contextlib.redirect_stdout(io.StringIO()) as said:
-        assert main(["array", "train", *logs, "-o", str(folder / "train")]) == 0
+    simulate, train, run, *_ = commands()
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        assert main([*simulate, "--logs", "2", "--contacts", "12", "--seed", "4", "--json"]) == 0
+        logs = [name for word in train for name in (sorted(map(str, Path().glob(word))) if "*" in word else [word])]
+        with contextlib.redirect_stdout(io.StringIO()) as said:
+            assert main(logs) == 0
+            assert main(run) == 0
     (folder / "said.txt").write_text(said.getvalue())
     return folder
+
+
+def test_the_commands_of_the_page(made: Path) -> None:
+    """The fixture runs the first three; a port and a benchmark are below."""
+    assert [words[1] for words in commands()] == ["simulate", "train", "run", "run", "bench"]
+    for words in commands():
+        build_parser(words).parse_args(words)
+    assert sorted(each.name for each in (made / "felt").iterdir()) == RUN
+
+
+def test_the_pictures_of_the_page_are_there() -> None:
+    for name in re.findall(r"\]\((pictures/[^)]+)\)", PAGE.read_text()):
+        assert (PAGE.parent / name).stat().st_size > 10_000
 
 
 def rows(path: Path) -> list[dict[str, str]]:
@@ -42,9 +69,9 @@ def rows(path: Path) -> list[dict[str, str]]:
 
 
 def test_what_is_simulated_says_so(made: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    log = read_log(made / "sim/presses-1.csv")
+    log = read_log(made / "logs/presses-1.csv")
     assert log.recording.stream.simulated and len(log.recording.stream.channels) == 68
-    assert {each["simulated"] for each in rows(made / "sim/twirl-1-events.csv")} == {"1"}
+    assert {each["simulated"] for each in rows(made / "logs/twirl-1-events.csv")} == {"1"}
     words = ["array", "simulate", "--density", "8x16", "--logs", "1", "--contacts", "1", "-o", str(made / "dense")]
     assert main(words) == 0 and "8x16" in capsys.readouterr().out
     assert len(read_log(made / "dense/presses-1.csv").recording.stream.channels) == 8 * 16 + 4
@@ -53,42 +80,37 @@ def test_what_is_simulated_says_so(made: Path, capsys: pytest.CaptureFixture[str
 def test_the_same_seed_gives_the_same_logs(made: Path, tmp_path: Path) -> None:
     assert main(["array", "simulate", "--logs", "2", "--contacts", "12", "--seed", "4", "-o", str(tmp_path), "--json"]) == 0
     for each in tmp_path.iterdir():
-        assert each.read_bytes() == (made / "sim" / each.name).read_bytes()
+        assert each.read_bytes() == (made / "logs" / each.name).read_bytes()
 
 
 def test_held_out_errors_are_told(made: Path) -> None:
-    assert sorted(each.name for each in (made / "train").iterdir()) == TRAIN
-    result = json.loads((made / "train/result.json").read_text())
-    assert result["simulated"] and [len(each["sha256"]) for each in result["made_from"]] == [64] * 3
+    assert sorted(each.name for each in (made / "model").iterdir()) == TRAIN
+    result = json.loads((made / "model/result.json").read_text())
+    assert result["simulated"] and [len(each["sha256"]) for each in result["made_from"]] == [64] * 4
     by = {(each["way"], each["quantity"]): each["rms"] for each in result["errors"]}
     assert by["learned", "axial"] < 0.3 * by["published", "axial"] and by["learned", "line"] < 0.5 * by["published", "line"]
-    model, facts = load_array(made / "train/model.npz")
+    model, facts = load_array(made / "model/model.npz")
     assert model.geometry.skin == pytest.approx(3.8, abs=0.1) and facts["simulated"]
     said = (made / "said.txt").read_text()
     assert "on logs that were held out" in said and all(f"  {name}" in said for name in ("axial", "angle", "force", "line"))
 
 
-def test_a_log_is_read(made: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    words = ["array", "run", str(made / "sim/twirl-1.csv"), "--model", str(made / "train/model.npz"), "-o", str(tmp_path / "o")]
-    assert main([*words, "--json"]) == 0
-    result = json.loads(capsys.readouterr().out)
-    assert (
-        sorted(each.name for each in (tmp_path / "o").iterdir()) == RUN and json.loads((tmp_path / "o/result.json").read_text()) == result
-    )
+def test_a_log_is_read(made: Path) -> None:
+    result = json.loads((made / "felt/result.json").read_text())
     assert result["simulated"] and result["frames"] == 100 and sum(result["states"].values()) == 100
-    true = rows(made / "sim/twirl-1-events.csv")
+    true = rows(made / "logs/twirl-1-events.csv")
     assert [each["kind"] for each in result["events"]] == [each["kind"] for each in true]
-    assert [each["kind"] for each in rows(tmp_path / "o/events.csv")] == [each["kind"] for each in true]
-    frames = rows(tmp_path / "o/frames.csv")
-    truth = read_log(made / "sim/twirl-1.csv").recording.column("axial_mm")[6:]
+    assert [each["kind"] for each in rows(made / "felt/events.csv")] == [each["kind"] for each in true]
+    frames = rows(made / "felt/frames.csv")
+    truth = read_log(made / "logs/twirl-1.csv").recording.column("axial_mm")[6:]
     off = [float(each["axial_mm"]) - x for each, x in zip(frames, truth.tolist(), strict=True) if each["axial_mm"] and math.isfinite(x)]
     assert np.sqrt(np.mean(np.square(off))) < 0.3 and {each["simulated"] for each in frames} == {"1"}
 
 
 def test_pulls_along_the_skin_are_told(made: Path, tmp_path: Path) -> None:
-    words = ["array", "run", str(made / "sim/pushes-1.csv"), "--model", str(made / "train/model.npz"), "-o", str(tmp_path / "o")]
+    words = ["array", "run", str(made / "logs/pushes-1.csv"), "--model", str(made / "model/model.npz"), "-o", str(tmp_path / "o")]
     assert main([*words, "--json"]) == 0
-    log, off = read_log(made / "sim/pushes-1.csv").recording, []
+    log, off = read_log(made / "logs/pushes-1.csv").recording, []
     force, along, around = (log.column(name)[15:] for name in ("force_n", "along_n", "around_n"))
     for k, each in enumerate(rows(tmp_path / "o/frames.csv")):
         if force[k] > 0:
@@ -115,17 +137,23 @@ def test_several_contacts_are_told_each(tmp_path: Path, capsys: pytest.CaptureFi
 
 
 def test_without_a_model_the_array_is_as_drawn(made: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["array", "run", str(made / "sim/presses-1.csv"), "-o", str(tmp_path / "o"), "--json"]) == 0
+    assert main(["array", "run", str(made / "logs/presses-1.csv"), "-o", str(tmp_path / "o"), "--json"]) == 0
     result = json.loads(capsys.readouterr().out)
     assert json.loads((tmp_path / "o/result.json").read_text()) == result
     assert any("as drawn" in note for note in result["notes"]) and result["states"]["point"] >= 34
 
 
-def test_a_port_is_read_as_it_comes(made: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_port_is_read_as_it_comes(
+    made: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """By the page's command, into the folder where a log's results are."""
+    (tmp_path / "model").symlink_to(made / "model")
+    shutil.copytree(made / "felt", tmp_path / "felt")
+    monkeypatch.chdir(tmp_path)
     recording, truth = twirl(Device(seed=4), seed=4001)
     with PtyServer(recording.stream, recording, rate_hz=0) as device:
-        words = ["array", "run", "--port", str(device.path), "--seconds", "8", "--model", str(made / "train/model.npz")]
-        assert main([*words, "-o", str(tmp_path / "o"), "--json"]) == 0
+        swapped = {"/dev/ttyACM0": str(device.path), "60": "8"}
+        assert main([*(swapped.get(word, word) for word in commands()[3]), "--json"]) == 0
     result = json.loads(capsys.readouterr().out)
     assert result["simulated"] and result["frames"] >= 95 and 0 < result["latency_ms"]["median"] <= result["latency_ms"]["worst"]
     assert [each["kind"] for each in result["events"]] == [each.kind for each in truth]
@@ -134,7 +162,7 @@ def test_a_port_is_read_as_it_comes(made: Path, tmp_path: Path, capsys: pytest.C
 def test_a_port_that_sends_another_array(made: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     recording = presses(Device(Geometry.of_density("8x16")), 4)
     with PtyServer(recording.stream, recording) as device:
-        words = ["array", "run", "--port", str(device.path), "--model", str(made / "train/model.npz"), "-o", str(tmp_path / "o")]
+        words = ["array", "run", "--port", str(device.path), "--model", str(made / "model/model.npz"), "-o", str(tmp_path / "o")]
         assert main(words) == 1
     assert "8 x 16 tactels, and the model 8 x 8" in capsys.readouterr().err and not (tmp_path / "o").exists()
 
@@ -181,7 +209,7 @@ def test_wrong_usage(
 
 
 def test_logs_that_cannot_be_learned_from(made: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    one = made / "sim/presses-1.csv"
+    one = made / "logs/presses-1.csv"
     copy = tmp_path / "copy.csv"
     copy.write_bytes(one.read_bytes())
     out = ["-o", str(tmp_path / "o")]
@@ -195,12 +223,12 @@ def test_logs_that_cannot_be_learned_from(made: Path, tmp_path: Path, capsys: py
 
 def test_a_model_of_something_else(made: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "m.npz").write_bytes(b"\x80\x04 pickled")
-    words = ["array", "run", str(made / "sim/presses-1.csv"), "--model", str(tmp_path / "m.npz"), "-o", str(tmp_path / "o")]
+    words = ["array", "run", str(made / "logs/presses-1.csv"), "--model", str(tmp_path / "m.npz"), "-o", str(tmp_path / "o")]
     assert main(words) == 1 and "pickle" in capsys.readouterr().err
 
 
 def test_a_log_is_not_written_over(made: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    recording = read_log(made / "sim/presses-1.csv").recording
+    recording = read_log(made / "logs/presses-1.csv").recording
     write_log(Recording.of_frames(recording.stream, list(recording)), tmp_path / "frames.csv")
     assert main(["array", "run", str(tmp_path / "frames.csv"), "-o", str(tmp_path)]) == 1
     assert "would be replaced" in capsys.readouterr().err

@@ -192,12 +192,15 @@ def fit_spot(
     window = (0, rings, math.floor(start[1] / skin[1] + 0.5) - columns // 2, columns)
     n, k = rings * columns, len(free)
     pulled = free[k - 1] == 5
-    r, J, r_new, J_new = np.empty(n), np.empty((6, n)), np.empty(n), np.empty((6, n))
+    r, J, r_new, J_new, J_free = np.empty(n), np.empty((6, n)), np.empty(n), np.empty((6, n)), np.empty((k, n))
     A, b, s = np.empty((k, k)), np.empty(k), np.empty(k)
     at, trial, lam = start.copy(), start.copy(), 1e-3
     cost = _residual(Z, gains, at, pulled, nodes, skin, shrink, window, r, J)
     for _ in range(_STEPS):
-        normal_equations(J[free], r, lam, A, b)
+        for m in range(k):  # loops here too: J[free] and trial[:] = at take 4 s to compile
+            for e in range(n):
+                J_free[m, e] = J[free[m], e]
+        normal_equations(J_free, r, lam, A, b)
         solve(A, b, s)
         far = 1.0
         for m in range(k):
@@ -217,7 +220,8 @@ def fit_spot(
             J, J_new = J_new, J
         else:
             lam *= 10
-        trial[:] = at
+        for m in range(6):
+            trial[m] = at[m]
         if moved < tolerance or lam > 1e8:
             break
     return at, cost
