@@ -13,12 +13,18 @@ from skinfab.flatten.mapping import FlatMap
 from skinfab.material import Material
 from skinfab.mesh.model import Mesh
 from skinfab.pieces import Piece
-from skinfab.placement.check import check_sensor, find_faults
+from skinfab.placement.check import Checker
 from skinfab.placement.edit import middle_of
 from skinfab.placement.lifted import Lifted, in_line
 from skinfab.placement.sensor import Sensor
 
 FloatArray = NDArray[np.float64]
+
+#: What has come to lie too close by no more than this is moved on so far: pieces that are flattened anew differ by some 0.02 mm where
+#: nothing was changed, and no printer hits a spot better.
+_SETTLED_MM = 0.1
+#: Ways in which it is moved on.
+_WAYS = 16
 
 #: Points along a pattern by which its new direction is found: a spiral of six turns gets ten on each.
 _SAMPLES = 64
@@ -79,7 +85,7 @@ def put_back(
     material : Material, optional
         Says what fits; without it that is not asked.
     """
-    moves = _Moves(mesh, after)
+    moves, check = _Moves(mesh, after), None if material is None else Checker(material)
     pieces = {piece.id: piece for piece in after}
     line = in_line(sensors, lifted)
     there, still = list(sensors), list[Lifted]()
@@ -89,9 +95,11 @@ def put_back(
         if new is None:
             still.append(dataclasses.replace(each, why=""))
             continue
+        if check is not None:
+            new = _settled(check, pieces[new.piece], new, there)
         why = _taken(new, there)
-        if not why and material is not None:
-            why = "; ".join(f.brief or f.text for f in find_faults(pieces[new.piece], new, there, material=material))
+        if not why and check is not None:
+            why = "; ".join(f.brief or f.text for f in check.faults(pieces[new.piece], new, there))
         if why:
             still.append(dataclasses.replace(each, why=why))
         else:
@@ -131,7 +139,8 @@ def carry(
     """
     kept = {id(piece) for piece in after}
     old = {piece.id: piece for piece in before}
-    moves = _Moves(mesh, after)
+    new_pieces = {piece.id: piece for piece in after}
+    moves, check = _Moves(mesh, after), None if material is None else Checker(material)
     carried: list[Sensor] = []
     lost: list[Sensor] = []
     moved: list[Sensor] = []
@@ -144,19 +153,35 @@ def carry(
         if new is None:
             lost.append(sensor)
         else:
+            if check is not None:
+                # Sensors that were not moved lie on other pieces.
+                new = _settled(check, new_pieces[new.piece], new, moved)
             carried.append(new)
             moved.append(new)
     remarks = [
         f"{s.id} was taken off: its spot on the object is on no flat piece any more; cut so that it is, or place it anew" for s in lost
     ]
-    if material is not None:
-        new_pieces = {piece.id: piece for piece in after}
+    if check is not None:
         for k, sensor in enumerate(moved):
-            # Each pair once. Sensors that were not moved lie on other pieces.
-            wrong = check_sensor(new_pieces[sensor.piece], sensor, moved[:k], material=material)
+            # Each pair once.
+            wrong = [fault.text for fault in check.faults(new_pieces[sensor.piece], sensor, moved[:k])]
             if wrong:
                 remarks.append(f"{'; '.join(wrong)}, since the object was cut anew; move, turn or shrink it")
     return Carried(tuple(carried), tuple(lost), tuple(remarks))
+
+
+def _settled(check: Checker, piece: Piece, sensor: Sensor, others: Sequence[Sensor]) -> Sensor:
+    """The sensor; where it is too close by a hair's breadth, moved on by the least that makes it fit, if anything so little does."""
+    lack = max((fault.amount for fault in check.faults(piece, sensor, others)), default=0.0)
+    if not 0 < lack <= _SETTLED_MM:
+        return sensor
+    turns = 2 * np.pi * np.arange(_WAYS) / _WAYS
+    for far in (1.1 * lack, 2 * lack, 2 * _SETTLED_MM):
+        for dx, dy in far * np.stack([np.cos(turns), np.sin(turns)], axis=1):
+            moved = dataclasses.replace(sensor, x=sensor.x + float(dx), y=sensor.y + float(dy))
+            if not check.faults(piece, moved, others):
+                return moved
+    return sensor
 
 
 class _Moves:

@@ -168,7 +168,8 @@ class Checker:
         if inside and apart >= bead / 2:
             brief = f"{_mm(lack)} mm too close to the edge of "
             where = f"{brief}piece {piece.id}"
-            text = f"{sensor.id} is {where} ({apart - bead / 2:.2f} mm from bead to edge, {margin:g} mm is the margin)"
+            digits = 2 if lack >= 0.01 else 4  # 0.996 is not to read 1.00
+            text = f"{sensor.id} is {where} ({apart - bead / 2:.{digits}f} mm from bead to edge, {margin:g} mm is the margin)"
             yield Finding(text, lack, sensor.id, brief=brief + piece.id)
             return
         beyond = ground.overhang(self._shape(sensor.pattern).points_at(sensor))

@@ -1,6 +1,7 @@
 """Sensors stay on their spot of the object when pieces change."""
 
 import dataclasses
+from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from skinfab.mesh.model import Mesh
 from skinfab.patterns.registry import make_pattern
 from skinfab.pieces import Piece
 from skinfab.placement.carry import carry, put_back
+from skinfab.placement.check import check_sensor
 from skinfab.placement.edit import middle_of
 from skinfab.placement.lifted import Lifted
 from skinfab.placement.sensor import Sensor
@@ -46,6 +48,19 @@ def sensor_at(x: float, y: float, angle: float = 0.3, id: str = "C1") -> Sensor:
     sensor = Sensor(id, "P1", SPIRAL, 0.0, 0.0, angle, 0)
     dx, dy = np.array([x, y]) - middle_of(sensor)
     return dataclasses.replace(sensor, x=float(dx), y=float(dy))
+
+
+def sensor_at_of(piece: Piece, x: float) -> Sensor:
+    """Middle of the pattern at (x, 60) of a piece of the parted sheet."""
+    return dataclasses.replace(sensor_at(x, 60), piece=piece.id)
+
+
+def bisect(holds: Callable[[float], bool], low: float, high: float) -> float:
+    """The least x at which something holds from there on."""
+    while high - low > 1e-7:
+        middle = (low + high) / 2
+        low, high = (low, middle) if holds(middle) else (middle, high)
+    return high
 
 
 def on_object(mesh: Mesh, piece: Piece, sensor: Sensor) -> np.ndarray:
@@ -162,3 +177,22 @@ def test_a_lifted_sensor_stays_off_where_it_has_no_spot_or_does_not_fit() -> Non
     assert why(dataclasses.replace(other, id="c1")) == "another sensor is named C1"
     assert why(dataclasses.replace(other, channel=0)) == "C9 has its channel 0"
     assert put_back(mesh, [lifted], [other], after).back == (own,), "without a material only names and channels are asked"
+
+
+@pytest.mark.parametrize(("lack", "fits"), [(0.004, True), (0.09, True), (0.5, False)])
+def test_what_is_too_close_by_a_hair_is_moved_on_and_by_more_is_told(lack: float, fits: bool) -> None:
+    """Pieces that are flattened anew differ by some hundredths: a sensor at the margin would no longer be printable."""
+    mesh = sheet()
+    before, after = flat_pieces(mesh), flat_pieces(mesh, 4)
+    # Where the cut at 40 mm leaves just the margin, less what is lacking.
+    fault = check_sensor(after[1], sensor_at_of(after[1], 10.0), (), material=MATERIAL)
+    assert fault
+    least = bisect(lambda x: not check_sensor(after[1], sensor_at_of(after[1], x), (), material=MATERIAL), 10.0, 30.0)
+    sensor = sensor_at(40 + least - lack, 60)
+    carried = carry(mesh, [sensor], before, after, material=MATERIAL)
+    (new,) = carried.sensors
+    assert (carried.remarks == ()) is fits
+    away = abs(middle_of(new)[0] - (least - lack))
+    assert lack < away < 2.5 * lack + 1e-6 if fits else away < 1e-9
+    lifted = put_back(mesh, [Lifted(sensor, before[0])], (), after, material=MATERIAL)
+    assert bool(lifted.back) is fits

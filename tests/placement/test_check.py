@@ -31,7 +31,7 @@ def test_margin_zero_is_met_exactly_and_a_hair_more_is_not(sheet: Callable) -> N
     lowest = KEEP - (SPIRAL.b / 2 - SPIRAL.s / 2)
     assert check_sensor(piece, put(20, lowest), (), material=MATERIAL) == []
     (text,) = check_sensor(piece, put(20, lowest - 0.002), (), material=MATERIAL)
-    assert text.startswith("C1 is 0.002 mm too close to the edge of piece P1 (1.00 mm from bead to edge, 1 mm is the margin)")
+    assert text.startswith("C1 is 0.002 mm too close to the edge of piece P1 (0.9980 mm from bead to edge, 1 mm is the margin)")
     no_margin = dataclasses.replace(MATERIAL, margin=0.0)
     assert check_sensor(piece, put(20, lowest - MATERIAL.margin), (), material=no_margin) == []
     (text,) = check_sensor(piece, put(20, lowest - MATERIAL.margin - 0.01), (), material=no_margin)
