@@ -18,7 +18,7 @@ def draw(table: Sequence[Mapping[str, Any]], path: Path) -> None:
     """Write the chart as PNG: error over span and over poses, and what part of the errors the stated 95 % hold."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
-    from matplotlib.ticker import LogFormatter, NullFormatter
+    from matplotlib.ticker import LogLocator, NullFormatter
 
     figure = Figure(figsize=(11.0, 3.9), dpi=_DPI, layout="constrained")
     FigureCanvasAgg(figure)
@@ -43,8 +43,9 @@ def draw(table: Sequence[Mapping[str, Any]], path: Path) -> None:
         axes.grid(True, which="both", lw=0.3, alpha=0.6)
     for axes in panels[:2]:
         axes.set_yscale("log")
+        axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 4.0, 6.0)))
         axes.yaxis.set_major_formatter("{x:g}")
-        axes.yaxis.set_minor_formatter(LogFormatter(labelOnlyBase=False, minor_thresholds=(2, 0.5)))
+        axes.yaxis.set_minor_formatter(NullFormatter())
         axes.set_ylabel("error, mm")
         axes.axhspan(min(paper_errors()), max(paper_errors()), color="#999999", alpha=0.25, lw=0, label="the paper's table 3")
     panels[2].axhline(0.95, color="#555555", lw=1, ls="--")

@@ -59,4 +59,4 @@ def _draw(axes: Axes3D, poses: Poses, centre: Centre, published: Centre | None, 
         each(middle - reach, middle + reach)
         getattr(axes, f"set_{name}label")(f"{name}, mm", fontsize=7)
     axes.tick_params(labelsize=6)
-    axes.set_box_aspect((1, 1, 1))
+    axes.set_box_aspect((1, 1, 1), zoom=0.82)  # the names of its axes lie outside, and neighbours would cover them
