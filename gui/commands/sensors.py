@@ -9,8 +9,8 @@ from gui.actions import Action
 from gui.desk import Desk
 from gui.jobs import tasks
 from gui.state.adopt import adopt
+from gui.state.outdated import holds
 from gui.state.selection import NOTHING
-from skinfab.placement.sensor import Sensor
 from skinfab.skin import Skin
 
 _FILE_TIP = "Which sensors, and where, from a TOML file as skinfab place takes it (docs/sensors.md)."
@@ -21,8 +21,8 @@ class SensorCommands:
 
     def __init__(self, desk: Desk) -> None:
         self._desk = desk
-        #: The sensors that there is something to say of, and that.
-        self._said: tuple[tuple[Sensor, ...], tuple[str, ...]] = (), ()
+        #: The document that there is something to say of, the step that made it, and that.
+        self._said: tuple[Skin | None, int, tuple[str, ...]] = None, 0, ()
         desk.session.listen("skin", self._follow)
 
     def actions(self) -> list[Action]:
@@ -50,9 +50,10 @@ class SensorCommands:
         def take(result: tuple[Skin, tuple[str, ...]]) -> None:
             skin, warnings = result
             session = self._desk.session
-            sensors = adopt(asked, skin).sensors
-            self._said = sensors, warnings
-            session.do(label, replace(self._desk.skin, sensors=sensors, lifted=()))
+            placed = replace(self._desk.skin, sensors=adopt(asked, skin).sensors, lifted=())
+            session.do(label, placed)
+            self._said = placed, session.step, warnings
+            self._follow()
 
         def wanted() -> bool:
             """On the same pieces, whatever else was done to the skin; but what was undone can be redone."""
@@ -68,9 +69,12 @@ class SensorCommands:
         self._desk.work("placing sensors", tasks.place_anew, take, source="place", wanted=wanted, skin=asked, file=file)
 
     def _follow(self) -> None:
-        """What was said of sensors holds of these alone."""
-        skin, (sensors, warnings) = self._desk.session.skin, self._said
-        self._desk.note("place", warnings if skin is not None and sensors and skin.sensors is sensors else (), kind="warning")
+        """What was said when sensors were placed goes where that is undone, and each line where what it names has changed."""
+        now = self._desk.session.skin
+        then, step, warnings = self._said
+        if now is None or then is None or now.mesh is not then.mesh or self._desk.session.step < step:
+            warnings = ()
+        self._desk.note("place", [text for text in warnings if then and now and holds(text, then, now)], kind="warning")
 
     def clear(self) -> None:
         """Take all off."""

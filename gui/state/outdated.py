@@ -30,6 +30,7 @@ class Outdated:
         #: Each line, and the document that it was said of.
         self._said: dict[Problem, Skin] = {}
         session.listen("problems", self._learn)
+        session.listen("file", self._learn)  # of another document nothing was said yet
         session.listen("skin", self._look)
 
     def _learn(self) -> None:

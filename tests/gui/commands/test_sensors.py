@@ -71,5 +71,12 @@ def test_what_is_said_of_placed_sensors_goes_and_comes_with_them(cup, monkeypatc
     assert cup.problems("warning") == []
     cup.press("Control-y")
     assert cup.problems("warning") == ["piece P9 has no sensor"]
+    cup.session.do("move C1", replace(cup.skin, sensors=(replace(one[0], x=one[0].x + 1),)))
+    assert cup.problems("warning") == ["piece P9 has no sensor"], "as true as before"
+    elsewhere = cup.skin.pieces[0].id
+    cup.app.actions.do("undo")
+    placed = placed[0], (f"C1 is stretched on {elsewhere}",)
+    cup.app.actions.do("auto_place")
+    cup.wait()
     cup.app.actions.do("clear")
     assert cup.problems("warning") == []

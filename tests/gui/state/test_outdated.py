@@ -59,3 +59,11 @@ def test_lines_go_with_the_step_that_outdates_them(session):
     session.undo()
     session.undo()
     assert first not in session.problems
+
+
+def test_nothing_of_one_document_is_said_of_the_next(session, skin):
+    Outdated(session)
+    session.report("export", [Problem("wrote 20 files into out", "export", kind="note")])
+    session.open(replace(skin), None)
+    session.do("move C1", change(session.skin, "C1", x=40.0))
+    assert session.problems == ()
