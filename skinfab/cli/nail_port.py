@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from skinfab.fingertip.nail.classify import NailModel
-    from skinfab.fingertip.nail.histogram_model import HistogramModel
+    from skinfab.fingertip.nail.histogram_model import HistogramModel as _Published
     from skinfab.fingertip.nail.live import Told
     from skinfab.fingertip.nail.regress import Regression
 
@@ -26,7 +26,7 @@ _EDGES_MS = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0)
 
 def watch_port(
     port: str,
-    model: NailModel | HistogramModel,
+    model: NailModel | _Published,
     regression: Regression | None,
     *,
     samples: int,
@@ -45,6 +45,7 @@ def watch_port(
         The port cannot be read, or what it sends is not what the model learned from.
     """
     from skinfab.cli.record import outage_notes, outages
+    from skinfab.fingertip.nail.histogram_model import HistogramModel
     from skinfab.fingertip.nail.live import NailWatch
     from skinfab.fingertip.nail.units import absent, units_note
     from skinfab.readout.serial_port import BAUD, SerialPort
@@ -52,12 +53,12 @@ def watch_port(
 
     told: list[Told] = []
     latency: list[float] = []
-    speaker = _Speaker(quiet)
+    speaker = _Speaker(quiet, agree=1 if isinstance(model, HistogramModel) else _AGREE)
     with SerialPort(port, baud=baud or BAUD) as source:
         watch = NailWatch(model, source.stream, samples=samples, every=every, regression=regression, rate_hz=rate_hz)
         clock, end = HostClock(), time.monotonic() + (seconds or math.inf)
         began, began_at, heard = clock.now(), time.time(), time.monotonic()
-        frames = passed_over = 0
+        frames, passed_over, busy = 0, 0, 0.0
         try:
             while (left := end - time.monotonic()) > 0:
                 if (frame := source.read(min(left, _WAIT_S))) is None:
@@ -68,7 +69,10 @@ def watch_port(
                     passed_over += 1
                     continue
                 frames += 1
-                if (made := watch.step(frame)) is not None:
+                before = time.perf_counter()
+                made = watch.step(frame)
+                busy += time.perf_counter() - before
+                if made is not None:
                     latency.append(1000 * (clock.now() - frame.host_time))
                     told.append(made)
                     speaker.hear(made)
@@ -84,6 +88,7 @@ def watch_port(
             "lost": max(watch.lost, counts.lost),
             "window_readings": watch.samples,
             "latency_ms": latency_facts(latency),
+            "deciding": min(busy / max(clock.now() - began, 1e-9), 1.0),
             "outages": gone,
             "notes": [
                 *absent(source.stream),
@@ -117,7 +122,9 @@ def latency_facts(latency_ms: list[float]) -> dict[str, Any] | None:
 class _Speaker:
     """Prints what is touched when it changes and stays for a moment."""
 
-    def __init__(self, quiet: bool) -> None:
+    def __init__(self, quiet: bool, *, agree: int) -> None:
+        # Windows of the published method share no readings, so one is as good as five that do.
+        self._needed = agree
         self._quiet, self._said, self._last, self._agree = quiet, "", "", 0
 
     def silence(self, port: str, lasts_s: float) -> None:
@@ -136,15 +143,16 @@ class _Speaker:
             return
         self._agree = self._agree + 1 if decision.label == self._last else 1
         self._last = decision.label
-        if self._agree < _AGREE or decision.label == self._said:
+        if self._agree < self._needed or decision.label == self._said:
             return
         self._said = decision.label
         found = decision.continuous
         parts = [f"{told.time_s:9.3f} s  {decision.label}"]
         if decision.contact:
-            parts.append(f"confidence {decision.confidence:.2f}")
+            parts += [f"confidence {decision.confidence:.2f}"] * (decision.confidence == decision.confidence)
             parts += [f"{found.angle_deg:.0f} deg"] * (found.angle_deg == found.angle_deg)
             parts += [f"at {found.x_mm:+.1f}, {found.y_mm:+.1f} mm"] * (found.x_mm == found.x_mm)
-            parts += [f"{found.force_n:.2f} N"] * (found.force_n == found.force_n)
+            beyond = {"high": " or more", "low": " or less", "": ""}[found.force_end]
+            parts += [f"{found.force_n:.2f} N{beyond}"] * (found.force_n == found.force_n)
             parts += ["like nothing learned"] * decision.strange
         print("  ".join(parts), flush=True)

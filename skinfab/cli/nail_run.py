@@ -23,8 +23,12 @@ _EVERY = 8
 _WINDOW = 33
 #: Decisions that come so much later than their readings, s, in the median, are ever more behind.
 _BEHIND_S = 0.2
+#: Deciding is what makes them late where it takes more of the time.
+_MOSTLY = 0.5
 #: Where more of the windows are like nothing learned, nothing was decided.
 _ALL_STRANGE = 0.95
+#: So much of the windows may have a force at the end of what was learned before it is told of.
+_AT_END = 0.2
 FILES = ("decisions.csv", "nail.png", "result.json")
 
 
@@ -85,12 +89,15 @@ def run(args: argparse.Namespace) -> int:
         )
     if not told:
         raise InputError(
-            f"{args.port or args.log} has {facts['frames']} frames and a window {facts['window_readings']}; give a shorter --window"
+            f"{args.port or args.log}: fewer than {facts['window_readings']} of {facts['frames']} frames have all six channels, which the "
+            "published method needs; look at the sensor's wires, or train with --method improved"
+            if own and facts["frames"] >= facts["window_readings"]
+            else f"{args.port or args.log} has {facts['frames']} frames and a window {facts['window_readings']}; give "
+            + ("a longer log" if own else "a shorter --window")
         )
     if not decided:
-        raise InputError(
-            f"{args.port or args.log}: nothing could be decided in any of {len(told)} windows; two channels at least must have readings"
-        )
+        why = Counter(each.reason for each in told if each.reason).most_common(1)[0][0]
+        raise InputError(f"{args.port or args.log}: nothing could be decided in any of {len(told)} windows: {why}")
     result = _facts(args, content, told, facts)
     _write(args.output, told, names, result)
     # The decisions are there to be looked at; whoever goes by the status must not take them for touches.
@@ -157,11 +164,13 @@ def _facts(args: argparse.Namespace, content: Any, told: Sequence[Told], facts: 
 
     decisions = [each.decision for each in told if each.decision is not None]
     notes = list(facts.pop("notes"))
-    if missing := max(each.missing for each in decisions):
-        part = sum(each.missing > 0 for each in decisions) / len(decisions)
+    for name, count in Counter(name for each in decisions for name in each.missing).items():
         notes.append(
-            f"up to {missing} of the six channels had too few readings or stood still, in {part:.1%} of the windows, decided without them"
+            f"channel {name} had too few readings or stood still, in {count / len(decisions):.1%} of the windows, decided without it"
         )
+    for end, word in (("high", "more"), ("low", "less")):
+        if (part := sum(each.continuous.force_end == end for each in decisions) / len(decisions)) > _AT_END:
+            notes.append(f"the force is at the {end} end of those that were learned in {part:.0%} of the windows: it may be {word}")
     left_out = float(np.mean([each.left_out for each in told]))
     if left_out > 0.01:
         notes.append(f"{left_out:.1%} of the readings are missing or saturated and were left out")
@@ -174,8 +183,11 @@ def _facts(args: argparse.Namespace, content: Any, told: Sequence[Told], facts: 
             "the sensor where it was, and all in the same units?"
         )
     if (latency := facts.get("latency_ms")) and latency["median"] > 1000 * _BEHIND_S:
+        late = f"decisions were {latency['median'] / 1000:.1f} s behind in the median: "
         notes.append(
-            f"decisions were {latency['median'] / 1000:.1f} s behind in the median: too many for this machine; give a larger --every"
+            f"{late}they are too many for this machine, which spent {facts['deciding']:.0%} of the time on them; give a larger --every"
+            if facts["deciding"] > _MOSTLY
+            else f"{late}this machine was busy with other things, as deciding took {facts['deciding']:.0%} of the time; end some of them"
         )
     if facts["lost"]:
         notes.append(f"{facts['lost']} frames were lost on the way")
@@ -215,11 +227,11 @@ def _write(output: Path, told: Sequence[Told], names: list[str], result: dict[st
     text.write("# simulated: true\n" if result["simulated"] else "")
     rows = csv.writer(text, lineterminator="\n")
     numbers = ("angle_deg", "x_mm", "y_mm", "force_n")
-    rows.writerow(["time_s", "label", "confidence", "contact", "strange", *numbers, "missing", "drive_hz", "left_out"])
+    rows.writerow(["time_s", "label", "confidence", "contact", "strange", *numbers, "force_end", "missing", "drive_hz", "left_out"])
     for each in told:
         d = each.decision
         if d is None:
-            rows.writerow([f"{each.time_s:.6f}", *[""] * 9, _cell(each.drive_hz), _cell(each.left_out)])
+            rows.writerow([f"{each.time_s:.6f}", *[""] * 10, _cell(each.drive_hz), _cell(each.left_out)])
             continue
         found = [_cell(getattr(d.continuous, name)) for name in numbers]
         flags = [int(d.contact), int(d.strange)]
@@ -230,7 +242,8 @@ def _write(output: Path, told: Sequence[Told], names: list[str], result: dict[st
                 "" if d.strange else _cell(d.confidence),
                 *flags,
                 *found,
-                d.missing,
+                d.continuous.force_end,
+                " ".join(d.missing),
                 _cell(each.drive_hz),
                 _cell(each.left_out),
             ]

@@ -1,18 +1,31 @@
 """`skinfab nail train` and `run`: from logs to a model, from a model to decisions, on a log and on a port."""
 
+import argparse
 import csv
 import itertools
 import json
+import math
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from skinfab.cli.main import main
+from skinfab.cli.nail_judged import judged
+from skinfab.cli.nail_port import _Speaker
+from skinfab.cli.nail_run import _facts
+from skinfab.fingertip.nail.live import Told, decide_log
+from skinfab.fingertip.nail.model_file import load_nail
+from skinfab.fingertip.nail.pace import pace_of
 from skinfab.fingertip.nail.patterns import TESTS
+from skinfab.fingertip.nail.reader import Decision
+from skinfab.fingertip.nail.regress import Continuous
 from skinfab.fingertip.nail.simulator import nail_frames, nail_stream, participant
+from skinfab.fingertip.nail.units import units_note
 from skinfab.readout.faults import Faults
+from skinfab.readout.logs.log import read_log
 from skinfab.readout.pty_server import PtyServer
 
 FILES = ["decisions.csv", "nail.png", "result.json"]
@@ -106,7 +119,7 @@ def test_run_on_a_log(logs: Path, model: Path, tmp_path: Path, capsys: pytest.Ca
     text = (tmp_path / "o/decisions.csv").read_text().splitlines()
     assert text[0] == "# simulated: true"
     rows = list(csv.DictReader(text[1:]))
-    assert len(rows) == found["windows"] and {each["missing"] for each in rows} == {"0"}
+    assert len(rows) == found["windows"] and {each["missing"] for each in rows} == {""}
     touched = next(each for each in rows if each["contact"] == "1" and each["strange"] == "0")
     assert abs(float(touched["x_mm"])) < 10 and touched["angle_deg"] == "" and 0 < float(touched["confidence"]) <= 1
 
@@ -273,33 +286,63 @@ def plain(logs: Path) -> Path:
     return path
 
 
-def judged_on(model: Path, plain: Path, table: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> dict:  # type: ignore[type-arg]
+def judged_on(model: Path, plain: Path, table: list[str]) -> tuple[dict, list[str]]:  # type: ignore[type-arg]
     (plain.parent / "l.csv").write_text("\n".join(line.replace("participant-1.csv", "plain.csv") for line in table) + "\n")
-    capsys.readouterr()
-    options = ["--labels", str(plain.parent / "l.csv"), "--every", "64", "-o", str(tmp_path / "o"), "--json"]
-    assert main(["nail", "run", str(model), str(plain), *options]) == 0
-    return json.loads(capsys.readouterr().out)  # type: ignore[no-any-return]
+    content, log = load_nail(model), read_log(plain)
+    pace = pace_of(log.recording)
+    told, _ = decide_log(content.model, log.recording, samples=33, every=64, pace=pace)
+    facts, notes = judged(plain.parent / "l.csv", log, told, 33, content, pace)
+    return facts["labels"], notes
 
 
-def test_the_same_readings_in_another_file_do_not_judge(
-    logs: Path, model: Path, plain: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    table = (logs / "labels.csv").read_text().splitlines()
-    found = judged_on(model, plain, table, tmp_path, capsys)
-    assert (found["labels"]["trials"], found["labels"]["learned_from"]) == (12, 28)
-    assert any("model's logs declare the units, and this log does not" in note for note in found["notes"])
+def test_the_same_readings_in_another_file_do_not_judge(logs: Path, model: Path, plain: Path) -> None:
+    labels, notes = judged_on(model, plain, (logs / "labels.csv").read_text().splitlines())
+    assert (labels["trials"], labels["learned_from"]) == (12, 28)
+    assert "the model learned from 28 of the 40 trials, which are not counted" in notes
 
 
-def test_a_table_that_does_not_go_with_the_log_is_told(
-    logs: Path, model: Path, plain: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_table_that_does_not_go_with_the_log_is_told(logs: Path, model: Path, plain: Path) -> None:
     head, *rows = (logs / "labels.csv").read_text().splitlines()[1:]
     own = [row.split(",") for row in rows if row.startswith("participant-1.csv")]
     late = [",".join([row[0], f"{float(row[1]) + 5:.6f}", f"{float(row[2]) + 5:.6f}", *row[3:]]) for row in own]
-    found = judged_on(model, plain, [head, *late], tmp_path, capsys)
-    assert found["labels"]["beyond"] == 28 and any(
-        "28 of the 40 rows of l.csv end after the log does, at 7.314 s, and count nowhere" in n for n in found["notes"]
-    )
+    labels, notes = judged_on(model, plain, [head, *late])
+    assert labels["beyond"] == 28
+    assert any("28 of the 40 rows of l.csv end after the log does, at 7.314 s, and count nowhere" in note for note in notes)
     name = next(row[3] for row in own if row[3] != "none")
-    found = judged_on(model, plain, [head, *(",".join(row).replace(f",{name},", ",thumb,") for row in own)], tmp_path, capsys)
-    assert "the model knows no thumb: 2 of the 12 trials can never be right" in found["notes"]
+    labels, notes = judged_on(model, plain, [head, *(",".join(row).replace(f",{name},", ",thumb,") for row in own)])
+    assert "the model knows no thumb: 2 of the 12 trials can never be right" in notes
+    short = [",".join([*row[:2], f"{float(row[1]) + 0.01:.6f}", *row[3:]]) for row in own]
+    labels, notes = judged_on(model, plain, [head, *short])
+    assert labels["trials"] == 0 and "no trial has a window of 33 readings that could be decided, and counts nowhere; see --window" in notes
+
+
+def test_what_a_port_says_aloud(capsys: pytest.CaptureFixture[str]) -> None:
+    """No confidence where none is known, a window of the published method at once, and a force at the end of what was learned as such."""
+    unsure = Decision("pin 1", math.nan, True, False, Continuous())
+    _Speaker(False, agree=1).hear(Told(1.0, unsure, 169.0, 0.0))
+    assert capsys.readouterr().out == "    1.000 s  pin 1\n"
+    hard = Decision("pin 1", 0.9, True, False, Continuous(force_n=2.9, force_end="high"))
+    speaker = _Speaker(False, agree=2)
+    speaker.hear(Told(1.0, hard, 169.0, 0.0))
+    assert capsys.readouterr().out == ""
+    speaker.hear(Told(1.1, hard, 169.0, 0.0))
+    assert capsys.readouterr().out == "    1.100 s  pin 1  confidence 0.90  2.90 N or more\n"
+
+
+@pytest.mark.parametrize("learned", [None, True, False])
+def test_units_of_a_port(learned: bool | None) -> None:
+    bare = replace(nail_stream(), channels=tuple(replace(each, unit="") for each in nail_stream().channels))
+    assert [len(units_note(learned, stream, "stream")) for stream in (nail_stream(), bare)] == [int(learned is False), int(learned is True)]
+
+
+@pytest.mark.parametrize(("deciding", "says"), [(0.8, "give a larger --every"), (0.1, "busy with other things, as deciding took 10%")])
+def test_what_is_said_of_a_run(model: Path, deciding: float, says: str) -> None:
+    """Who is late, and why; which wire is off; where forces end."""
+    content = load_nail(model)
+    far = Decision("pin 1", 0.9, True, False, Continuous(force_n=2.9, force_end="high"), ("Gy",))
+    facts = {"notes": [], "simulated": True, "lost": 0, "window_readings": 33, "latency_ms": {"median": 900.0}, "deciding": deciding}
+    found = _facts(argparse.Namespace(model=model), content, [Told(k / 10, far, 169.0, 0.0, True) for k in range(5)], facts)
+    notes = found["notes"]
+    assert any(says in note and "0.9 s behind in the median" in note for note in notes)
+    assert "channel Gy had too few readings or stood still, in 100.0% of the windows, decided without it" in notes
+    assert "the force is at the high end of those that were learned in 100% of the windows: it may be more" in notes

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skinfab.errors import InputError
-from skinfab.fingertip.nail.confidence import UNKNOWN, probabilities, temperature_of
+from skinfab.fingertip.nail.confidence import LAPSE, UNKNOWN, probabilities, temperature_of
 from skinfab.fingertip.nail.labels import NOTHING
 from skinfab.fingertip.nail.phasors import ComplexArray, reference_of, turned, turned_phasors
 from skinfab.fingertip.nail.units import CHANNELS
@@ -36,6 +36,10 @@ _UNKNOWN_SCATTER = 0.25
 _LONG = 10**9
 #: Squared distance, in its median among the trials learned from, beyond which a window is like nothing that was learned.
 STRANGE = 10.0
+#: Log-odds of no contact at the farthest trial without any: 99 in 100. At the gate they are even.
+_SURE_OF_NONE = math.log(99)
+#: The gate may lie within the trials without contact; then so narrow a part of it parts sure from not.
+_LEAST_WIDTH = 0.05
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,12 +51,12 @@ class Decisions:
     classes : (n,) int
         Index into the model's names.
     confidence : (n,) float
-        How probable that class is, among those that were learned.
+        How probable that class is, among those that were learned; without contact, how probable it is that there is none.
     probability : (n, k) float
         Of each class that is touched, in the order of `NailModel.touched`; each row adds up to 1, also without contact.
     contact : (n,) bool
     strange : (n,) bool
-        Like nothing that was learned: another finger, a sensor that came off.
+        Like nothing that was learned: another finger, a sensor that came off, a touch too light to be told from none.
     """
 
     classes: IntArray
@@ -161,6 +165,19 @@ class NailModel:
         without, touching = self._from_rest
         return self.at_rest is not None and bool(without.max() < touching.min())
 
+    def none_at(self, away: float, samples: int) -> tuple[float, bool]:
+        """How sure it is that a window so far from `at_rest` has no contact, and whether it is like neither.
+
+        The odds fall from 99 to 1 at the farthest trial without contact to even ones at the gate; like neither is what lies beyond the
+        middle of the two: there are touches lighter than any that were learned (simulated, 20 to 300 mN where 0.8 N and more were).
+        """
+        without, _ = self._from_rest
+        noise = 4 * float(((self.noise[self.channels] / self.size) ** 2).sum()) / samples
+        clean, farthest = math.sqrt(max(away**2 - noise, 0.0)), float(without.max())
+        width = max(self.gate - farthest, _LEAST_WIDTH * self.gate, 1e-300)
+        sure = 1 / (1 + math.exp(min((clean - self.gate) * _SURE_OF_NONE / width, 50.0)))
+        return (1 - LAPSE) * sure + LAPSE / 2, clean > self.gate - width / 2
+
     @cached_property
     def _from_rest(self) -> tuple[FloatArray, FloatArray]:
         """How far the trials without and with contact lie from `at_rest`."""
@@ -179,24 +196,26 @@ class NailModel:
 
     def decide_phasors(self, drive: ComplexArray, samples: int) -> Decisions:
         """Decide on phasors (n, 6) of windows of so many readings."""
-        return self._decide(self.features(drive), self.whitener(samples))
+        return self._decide(self.features(drive), samples)
 
     def _apart(self, x: FloatArray, L: FloatArray) -> FloatArray:
         """Squared distances of features (n, 2 c) from the classes that are touched, (n, k)."""
         out: FloatArray = (((x @ L.T)[:, None] - self.means @ L.T) ** 2).sum(axis=2)
         return out
 
-    def _decide(self, x: FloatArray, L: FloatArray) -> Decisions:
-        squared = self._apart(x, L)
+    def _decide(self, x: FloatArray, samples: int) -> Decisions:
+        squared = self._apart(x, self.whitener(samples))
         nearest, probability = squared.min(axis=1), probabilities(squared, self.temperature)
         best = squared.argmin(axis=1)
         classes, confidence = self.touched[best], probability[np.arange(len(x)), best]
-        contact = np.ones(len(x), dtype=bool)
+        contact, strange = np.ones(len(x), dtype=bool), nearest > STRANGE * self.usual
         if self.at_rest is not None:
-            contact = np.linalg.norm(x - self.at_rest, axis=1) > self.gate
+            away = np.linalg.norm(x - self.at_rest, axis=1)
+            contact = away > self.gate
             classes = np.where(contact, classes, self.names.index(NOTHING))
-            confidence = np.where(contact, confidence, 1.0)
-        return Decisions(classes, confidence, probability, contact, contact & (nearest > STRANGE * self.usual))
+            for k in np.flatnonzero(~contact):
+                confidence[k], strange[k] = self.none_at(float(away[k]), samples)
+        return Decisions(classes, confidence, probability, contact, strange)
 
     def decide(self, values: FloatArray, *, drive_hz: float | FloatArray | None = None) -> Decisions:
         """Decide on windows (n, samples, 6).

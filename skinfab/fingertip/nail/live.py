@@ -7,6 +7,7 @@ keeps its phase; readings that are missing or saturated are left out of the fit.
 from __future__ import annotations
 
 import math
+from collections import deque
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -21,7 +22,7 @@ from skinfab.fingertip.nail.pace import Pace, pace_of, places_of, times_of
 from skinfab.fingertip.nail.phasors import FIND_SHORTEST, SHORTEST, find_drive, turns
 from skinfab.fingertip.nail.reader import Decision, Reader
 from skinfab.fingertip.nail.regress import Continuous, Regression
-from skinfab.fingertip.nail.units import channel_columns
+from skinfab.fingertip.nail.units import CHANNELS, channel_columns
 from skinfab.readout.frame import Frame, Recording, Stream
 
 FloatArray = NDArray[np.float64]
@@ -55,6 +56,8 @@ class Told:
         Part of the window's readings that are missing or saturated.
     turning : bool, optional
         Did the motor turn? None before there were readings enough to tell.
+    reason : str, optional
+        Why the window could not be decided.
     """
 
     time_s: float
@@ -62,6 +65,7 @@ class Told:
     drive_hz: float
     left_out: float
     turning: bool | None = None
+    reason: str = ""
 
 
 class _Published:
@@ -72,6 +76,9 @@ class _Published:
 
     def decide(self, window: FloatArray, *, drive_hz: float | None = None) -> Decision:
         """Decide on a window of the length it was trained for; it knows no frequency and no probability."""
+        if (still := ~np.isfinite(window).all(axis=0)).any():
+            names = ", ".join(np.array(CHANNELS)[still])
+            raise InputError(f"channel {names} stands still, and the published method needs all six; mend it, or train --method improved")
         name = self._model.names[int(self._model.decide(window[None])[0])]
         return Decision(name, math.nan, name != "none", False, Continuous())
 
@@ -128,6 +135,10 @@ class NailWatch:
         self.every, self.lost = max(every, 1), 0
         self._rate = rate
         chosen = channel_columns(stream)
+        if self._published and (gone := [name for name, (k, _) in zip(CHANNELS, chosen, strict=True) if k < 0]):
+            raise InputError(
+                f"stream {stream.name} has no {', '.join(gone)}, and the published method needs all six channels; train --method improved"
+            )
         self._columns, self._scales = [k for k, _ in chosen], [scale for _, scale in chosen]
         self._reader: _Published | Reader
         if isinstance(model, HistogramModel):
@@ -139,6 +150,8 @@ class NailWatch:
         self._size = max(self.samples, _FOLLOWED)
         self._rows = np.full((2 * self._size, 6), np.nan)
         self._count, self._since, self._again, self._doubted = 0, 0, _AGAIN, False
+        # A histogram does not mind what lies between its readings, but needs all channels of each.
+        self._whole: deque[FloatArray] = deque(maxlen=self.samples)
         self._sequence: int | None = None
         self.turning: bool | None = None
 
@@ -158,6 +171,7 @@ class NailWatch:
             gap = sequence - self._sequence - 1
             if gap < 0:  # the device began anew, so that phases before it mean nothing
                 self._count, self._since, self._again, self._doubted = 0, 0, _AGAIN, False
+                self._whole.clear()
                 self.turning = None
                 gap = 0
             self.lost += gap
@@ -165,7 +179,8 @@ class NailWatch:
                 self._put(math.nan)
         self._sequence = sequence
         self._put(row)
-        if self._count < self.samples or self._since < self.every:
+        gathered = len(self._whole) if self._published else self._count
+        if gathered < self.samples or self._since < self.every:
             return None
         self._since = 0
         return self._decided(time_s)
@@ -174,7 +189,11 @@ class NailWatch:
         at = self._count % self._size
         self._rows[at] = self._rows[at + self._size] = row
         self._count += 1
-        self._since += 1
+        if not self._published:
+            self._since += 1
+        elif isinstance(row, np.ndarray) and math.isfinite(row.sum()):
+            self._whole.append(row)
+            self._since += 1
         if self._count >= self._again:
             self._follow()
 
@@ -203,10 +222,12 @@ class NailWatch:
         left_out = float(np.isnan(window[:, used]).mean())
         if self.turning is False:
             return Told(time_s, None, math.nan, left_out, False)
+        if self._published:
+            window = np.array(self._whole)
         try:
             decision = self._reader.decide(without_frozen(window), drive_hz=self.drive_hz)
-        except InputError:  # too little in this window; the next one may do
-            decision = None
+        except InputError as fault:  # too little in this window; the next one may do
+            return Told(time_s, None, self.drive_hz, left_out, self.turning, str(fault))
         return Told(time_s, decision, self.drive_hz, left_out, self.turning)
 
 

@@ -16,7 +16,8 @@ from skinfab.fingertip.nail.classify import STRANGE, NailModel
 from skinfab.fingertip.nail.confidence import LAPSE
 from skinfab.fingertip.nail.labels import NOTHING
 from skinfab.fingertip.nail.phasors import BLOCK, ComplexArray, lock_in_weights, turned_phasors
-from skinfab.fingertip.nail.regress import Continuous, Regression, continuous_of
+from skinfab.fingertip.nail.regress import Continuous, Regression
+from skinfab.fingertip.nail.units import CHANNELS
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
@@ -40,7 +41,7 @@ class Decision:
     contact, strange : bool
         See `skinfab.fingertip.nail.classify.Decisions`.
     continuous : Continuous
-    missing : int
+    missing : tuple of str
         Channels that were left out because the window has too few readings of them.
     """
 
@@ -49,7 +50,7 @@ class Decision:
     contact: bool
     strange: bool
     continuous: Continuous
-    missing: int = 0
+    missing: tuple[str, ...] = ()
 
 
 class Reader:
@@ -116,10 +117,10 @@ class Reader:
         nearest = float(squared[best])
         weight = np.exp((nearest - squared) / (2 * self.model.temperature))
         total = float(weight.sum())
-        contact = self._rest is None or math.dist(x, self._rest) > self._gate
-        if not contact:
-            return Decision(NOTHING, 1.0, False, False, Continuous())
-        found = Continuous() if self.regression is None else continuous_of(self.regression.estimate(x))
+        if self._rest is not None and (away := math.dist(x, self._rest)) <= self._gate:
+            sure, strange = self.model.none_at(away, self.samples)
+            return Decision(NOTHING, sure, False, strange, Continuous())
+        found = Continuous() if self.regression is None else self.regression.continuous(x)
         sure = (1 - LAPSE) / total + LAPSE / len(squared)
         return Decision(self._names[best], sure, True, nearest > self._usual, found)
 
@@ -139,7 +140,7 @@ class Reader:
             regression = None if self.regression is None else self.regression.of(model)
             self._others[key] = Reader(model, self.samples, regression=regression, rate_hz=self._rate)
         found = self._others[key].decide(window, drive_hz=drive_hz)
-        return replace(found, missing=found.missing + int(gone.sum()))
+        return replace(found, missing=tuple(name for name, out in zip(CHANNELS, gone, strict=True) if out or name in found.missing))
 
     def _weights_at(self, drive_hz: float) -> ComplexArray:
         key = round(drive_hz / _STEP_HZ)

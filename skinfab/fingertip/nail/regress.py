@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -30,6 +30,9 @@ REACH = 10.0
 RIDGE = 0.05
 #: Forces that span less cannot be told from the scatter of placing.
 LEAST_SPAN = 1.5
+#: A force within this factor of the largest or the smallest that was learned is told as at the end: regression draws towards the middle,
+#: so that of touches of twice the largest force and more, simulated, the middle one is told as 0.96 of it.
+AT_END = 1.25
 #: Directions (as cosine and sine) and feet (mm) that differ by less are one: rounding of what a table says.
 _ALIKE = 1e-6
 
@@ -45,12 +48,15 @@ class Continuous:
     x_mm, y_mm : float
         Foot of an edge, or the pin's place.
     force_n : float
+    force_end : str
+        ``high`` or ``low`` where the force is told at that end of those that were learned: it may be any beyond. Empty otherwise.
     """
 
     angle_deg: float = math.nan
     x_mm: float = math.nan
     y_mm: float = math.nan
     force_n: float = math.nan
+    force_end: str = ""
 
 
 def foot(x_mm: ArrayLike, y_mm: ArrayLike, angle_deg: ArrayLike) -> FloatArray:
@@ -118,6 +124,8 @@ class Regression:
         self.targets = targets
         self._W = np.linalg.inv(np.linalg.cholesky(model.scatter)) / (REACH * math.sqrt(2))
         self._white = model.learned @ self._W.T
+        force = targets[np.isfinite(targets[:, 4]), 4]
+        self._ends = (float(force.min()), float(force.max())) if len(force) else (-math.inf, math.inf)
         self._alpha, self._mean = np.zeros_like(targets), np.full(len(TARGETS), np.nan)
         for k, column in enumerate(targets.T):
             if not (known := np.isfinite(column)).any():
@@ -131,6 +139,14 @@ class Regression:
         apart = (features @ self._W.T)[..., None, :] - self._white
         out: FloatArray = np.exp(-np.einsum("...nd,...nd->...n", apart, apart)) @ self._alpha + self._mean
         return out
+
+    def continuous(self, features: FloatArray) -> Continuous:
+        """Of one window's features (d,), what they mean."""
+        target = self.estimate(features)
+        low, high = self._ends
+        log_force = float(target[4])
+        end = "high" if log_force > high - math.log(AT_END) else "low" if log_force < low + math.log(AT_END) else ""
+        return replace(continuous_of(target), force_end=end)
 
     def of(self, model: NailModel) -> Regression:
         """The same learned from the channels of another model of the same trials."""

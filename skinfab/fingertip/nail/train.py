@@ -19,7 +19,17 @@ from skinfab.fingertip.nail.frozen import without_frozen
 from skinfab.fingertip.nail.histogram_model import HistogramModel, fit_histograms
 from skinfab.fingertip.nail.labels import NOTHING, Trial
 from skinfab.fingertip.nail.model_file import class_names
-from skinfab.fingertip.nail.phasors import BLOCK, FIND_SHORTEST, ComplexArray, find_drive, lock_in, reference_of, turned_phasors
+from skinfab.fingertip.nail.phasors import (
+    BLOCK,
+    FIND_SHORTEST,
+    SHORTEST,
+    ComplexArray,
+    find_drive,
+    lock_in,
+    reference_of,
+    turned_phasors,
+    turns,
+)
 from skinfab.fingertip.nail.published import modes
 from skinfab.fingertip.nail.regress import Regression, angle_apart, continuous_of, learnable, targets_of
 from skinfab.fingertip.nail.touches import touches_of
@@ -38,6 +48,10 @@ FOLDS = 5
 _SATURATED = 0.01
 #: Fewer trials of a class are told of: with two, accuracy is 10 % lower than with five.
 _FEW = 5
+#: A frequency that is given may be off by so much of a block's resolution: a tenth of the amplitude is lost then.
+_OFF_BLOCK = 0.25
+#: And lie below so much of the sampling rate, as where it is looked for.
+_HIGHEST = 0.48
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,8 +95,23 @@ class Prepared:
         )
 
     def fit_published(self, rows: IntArray) -> HistogramModel:
-        """The published model of some of the trials, each cut to the paper's 1024 readings, or to the shortest trial."""
+        """The published model of some of the trials, each cut to the paper's 1024 readings, or to the shortest trial.
+
+        Raises
+        ------
+        InputError
+            A channel stands still or has too few readings in some trial.
+        """
+        if not (there := np.isfinite(self.drive).all(axis=0)).all():
+            raise InputError(
+                f"channel {', '.join(np.array(CHANNELS)[~there])} has too few readings in some trials, or stands still, and the published "
+                "method needs all six; mend it, or use --method improved"
+            )
         samples = min(PUBLISHED_WINDOW, *(len(_whole(each.values)) for each in self.trials))
+        if samples < SHORTEST:
+            raise InputError(
+                f"a trial has {samples} readings of all six channels, and the published method needs {SHORTEST}; record it again"
+            )
         windows = np.array([_whole(self.trials[k].values)[:samples] for k in rows])
         return fit_histograms(self.names, self.classes[rows], windows, rate_hz=self.rate_hz)
 
@@ -123,13 +152,16 @@ def prepare(trials: Sequence[Trial], *, drive_hz: float | None = None) -> Prepar
     Raises
     ------
     InputError
-        The sampling rates differ, a trial is too short for its motor's frequency to be found, or nothing vibrates in it.
+        The sampling rates differ, a trial is too short for its motor's frequency to be found, nothing vibrates in it, or not at the
+        frequency that is given.
     """
     rates = np.array([each.rate_hz for each in trials])
     rate = float(np.median(rates))
     if np.abs(rates - rate).max() > 0.01 * rate:
         raise InputError(f"the logs have {rates.min():.4g} to {rates.max():.4g} readings a second; record all of them at one rate")
     masked = [without_frozen(np.where(each.saturated, np.nan, each.values)) for each in trials]
+    if drive_hz is not None:
+        _require_drive(trials, masked, rate, drive_hz)
     drives = np.array([_drive(each, values, rate) if drive_hz is None else drive_hz for each, values in zip(trials, masked, strict=True)])
     first = np.array([lock_in(v[None, :BLOCK], rate, f).drive[0] for v, f in zip(masked, drives, strict=True)])
     reference = reference_of(first)
@@ -141,13 +173,36 @@ def prepare(trials: Sequence[Trial], *, drive_hz: float | None = None) -> Prepar
 
 
 def _drive(trial: Trial, values: FloatArray, rate: float) -> float:
-    where = f"{trial.label.log}, {trial.label.start_s:.3f} to {trial.label.end_s:.3f} s"
+    where = _where(trial)
     if len(values) < FIND_SHORTEST:
         raise InputError(f"{where}: {len(values)} readings are too few to find the motor's frequency in; give it with --drive")
     found = float(find_drive(values[None], rate)[0])
     if not np.isfinite(found):
         raise InputError(f"{where}: the motor does not turn: nothing that vibrates stands out of the noise; was it on?")
     return found
+
+
+def _require_drive(trials: Sequence[Trial], masked: Sequence[FloatArray], rate: float, drive_hz: float) -> None:
+    """Refuse a frequency that is given and that the readings do not have."""
+    if drive_hz > _HIGHEST * rate:
+        raise InputError(
+            f"--drive {drive_hz:g} is above half of {rate:.4g} readings a second, where nothing can be told; give the motor's own"
+        )
+    found = [float(find_drive(values[None], rate)[0]) for values in masked if len(values) >= FIND_SHORTEST]
+    known = [each for each in found if np.isfinite(each)]
+    if known and abs(middle := float(np.median(known)) - drive_hz) > _OFF_BLOCK * rate / BLOCK:
+        raise InputError(
+            f"--drive {drive_hz:g} is {abs(middle):.3g} Hz off: the motor turns at {drive_hz + middle:.1f} Hz in the readings; leave it out"
+        )
+    for each, values in zip(trials, masked, strict=True):
+        if not turns(values[None], rate, drive_hz)[0]:
+            raise InputError(
+                f"{_where(each)}: nothing of {drive_hz:g} Hz stands out of the noise; was the motor on, and is that its frequency?"
+            )
+
+
+def _where(trial: Trial) -> str:
+    return f"{trial.label.log}, {trial.label.start_s:.3f} to {trial.label.end_s:.3f} s"
 
 
 def _notes(trials: Sequence[Trial], names: tuple[str, ...], drive: ComplexArray) -> list[str]:

@@ -12,9 +12,9 @@ from skinfab.errors import InputError
 from skinfab.fingertip.nail.improved import asked, frequency, label_of, learn
 from skinfab.fingertip.nail.labels import Label
 from skinfab.fingertip.nail.phasors import find_drive, lock_in, turned_phasors
-from skinfab.fingertip.nail.protocol import Protocol, Session, sessions
+from skinfab.fingertip.nail.protocol import Protocol, Session, session, sessions
 from skinfab.fingertip.nail.regress import Regression, angle_apart, by_probability, continuous_of, foot, learnable, targets_of
-from skinfab.fingertip.nail.simulator import RATE_HZ, readings
+from skinfab.fingertip.nail.simulator import RATE_HZ, Scene, readings
 
 
 @pytest.fixture(scope="module")
@@ -106,3 +106,22 @@ def test_pins_have_no_direction() -> None:
 def test_a_target_a_trial(people: list[Session]) -> None:
     with pytest.raises(InputError, match="give 5 a trial"):
         Regression(learn(people[0]), np.zeros((3, 5)))
+
+
+def test_a_force_outside_what_was_learned_is_told_as_at_the_end() -> None:
+    settings = Protocol(training=5, rounds=2, estimates=1, samples=128)
+
+    def told(force_n: tuple[float, float]) -> list[str]:
+        out = []
+        for number in (1, 2):
+            one = session("edges4", number, protocol=settings, scene=Scene(force_n=(0.3, 3.0)), seed=2)
+            model = learn(one)
+            regression = Regression(model, targets_of([label_of(each) for each in one.training.touches]))
+            windows = asked(session("edges4", number, protocol=settings, scene=Scene(force_n=force_n), seed=2), 33)
+            x = model.features(turned_phasors(windows, model.rate_hz, model.drive_hz, model.reference)[0])
+            out += [regression.continuous(each).force_end for each in x]
+        return out
+
+    within, more, less = told((0.5, 1.8)), told((6.0, 10.0)), told((0.02, 0.1))
+    assert within.count("") > 0.75 * len(within)
+    assert more.count("high") > 0.7 * len(more) and less.count("low") > 0.4 * len(less) and "low" not in more and "high" not in less

@@ -101,3 +101,20 @@ def test_parts_of_a_touch_without_a_name_are_held_out_together(pins: list[Trial]
     assert all({k // 2 for k in train}.isdisjoint(k // 2 for k in test) for train, test in splits)
     notes = prepare(halves, drive_hz=169.0).notes
     assert any("taken for 28 touches, where those of one label" in note for note in notes) and any("has 4 trials" in note for note in notes)
+
+
+def test_a_frequency_that_is_given_must_be_in_the_readings(pins: list[Trial]) -> None:
+    assert prepare(pins, drive_hz=169.5).drive_hz.tolist() == [169.5] * len(pins)
+    for hz, says in ((120.0, "--drive 120 is 49 Hz off: the motor turns at 169"), (1690.0, "--drive 1690 is above half of 1400 readings")):
+        with pytest.raises(InputError, match=says):
+            prepare(pins, drive_hz=hz)
+    still = np.array([0.0, 0.0, 1.0, 0.0, 0.0, 0.0]) + 0.01 * np.random.default_rng(0).normal(size=(256, 6))
+    for off in (still, still[:40]):
+        with pytest.raises(InputError, match="nothing of 169 Hz stands out of the noise; was the motor on"):
+            prepare([*pins, replace(pins[0], values=off, saturated=np.zeros(off.shape, dtype=bool))], drive_hz=169.0)
+
+
+def test_the_published_method_needs_all_six_channels(pins: list[Trial]) -> None:
+    still = [replace(each, values=np.where(np.arange(6) == 4, 1.25, each.values)) for each in pins]
+    with pytest.raises(InputError, match="channel Gy has too few readings in some trials, or stands still, and the published method needs"):
+        prepare(still).fit_published(np.arange(len(pins)))
