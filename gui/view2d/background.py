@@ -1,4 +1,4 @@
-"""The still part of the flat view: faces, outlines, seams, names of pieces, grid, rulers, colour bar."""
+"""The still part of the flat view: faces, outlines, seams, grid, rulers, colour bar."""
 
 from __future__ import annotations
 
@@ -90,36 +90,11 @@ def paint_lines(ground: Ground, pen: Pen) -> None:
         pen.line([at, at + side.inward * NOTCH_PX * pen.ratio], theme.seam, 1.8)
 
 
-def paint_names(ground: Ground, pen: Pen, face: NDArray[np.int32]) -> list[Box]:
-    """The pieces' names and sizes, over their upper left corners or, where those would hide a piece, elsewhere; where they are."""
-    boxes: list[Box] = []
-    for piece, offset in zip(ground.sheet.pieces, ground.sheet.offset, strict=True):
-        width, height = piece.size
-        low, high = (ground.plane.to_px(ends(piece.UV, axis=0) + offset) for ends in (np.min, np.max))
-        least, best = np.inf, (piece.id, low, (0.0, 0.0))
-        for words in (f"{piece.id}  {width:.0f} x {height:.0f} mm", piece.id):
-            room = np.array(pen.room(words, NAME_PX, bold=True))
-            for x, y in ((0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)):
-                at = np.array([(low, high)[int(x)][0], high[1] + 4 * pen.ratio if y == 0 else low[1] - 4 * pen.ratio])
-                corner = at - room * (x, y)
-                box = (corner[0], corner[1], corner[0] + room[0], corner[1] + room[1])
-                cost = faces_under(box, face) + sum(_meet(box, other) for other in boxes)
-                if cost < least:
-                    least, best = cost, (words, at, (x, y))
-        words, at, anchor = best
-        boxes.append(pen.text(at, words, ground.theme.text, size=NAME_PX, anchor=anchor, ground=ground.theme.view, bold=True))
-    return boxes
-
-
 def faces_under(box: Box, face: NDArray[np.int32]) -> float:
     """How much of a box lies over pieces, from 0 to 1; `face` (rows, columns) counts rows down."""
     height = len(face)
     part = face[max(int(height - box[3]), 0) : max(int(height - box[1]), 0) + 1, max(int(box[0]), 0) : max(int(box[2]), 0) + 1]
     return float((part >= 0).mean()) if part.size else 0.0
-
-
-def _meet(one: Box, other: Box) -> bool:
-    return one[0] < other[2] and other[0] < one[2] and one[1] < other[3] and other[1] < one[3]
 
 
 def paint_frame(ground: Ground, pen: Pen) -> None:

@@ -14,9 +14,10 @@ from gui.shades import face_colours
 from gui.state.derived import Derived, Part
 from gui.state.session import Session
 from gui.theme import Theme
-from gui.view2d.background import BAR_PX, RULER_PX, Ground, paint_faces, paint_frame, paint_lines, paint_names
+from gui.view2d.background import BAR_PX, RULER_PX, Ground, paint_faces, paint_frame, paint_lines
 from gui.view2d.fill import fill
 from gui.view2d.hands import Hands
+from gui.view2d.headings import paint_names
 from gui.view2d.hit import REACH_PX, Hit2D, hit
 from gui.view2d.labels import Taken, paint_labels, paint_small_names
 from gui.view2d.lines import Lines
@@ -250,10 +251,10 @@ class View2D(ttk.Frame):
         held = {s.id for s in self.hands.sensors}
         lying = [s for s in skin.sensors if s.id not in held]
         findings = {k: v for k, v in self.live.findings.items() if k not in held}
-        named = marker.sensors(lying, findings)
         taken = Taken(pen.width, pen.height, pen.ratio)
         taken.lines(self.plane.to_px(self.lines.of(sensor, sheet)) for sensor in lying)
-        for box in (*named, *paint_names(ground, pen, self._triangles)):
+        headings = paint_names(ground, pen, self._triangles, taken)
+        for box in (*headings, *marker.sensors(lying, findings)):  # a sensor that lies between pieces is hidden by no heading
             taken.box(box)
         paint_small_names(marker.small(lying, findings), ground, pen, taken)
         paint_labels(ground, pen, self._triangles, taken)

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from gui.view2d import view as view_module
-from gui.view2d.background import faces_under, paint_names
 from gui.view2d.labels import Taken, paint_labels, paint_small_names
 from gui.view2d.marking import WRITTEN_OVER_PX
 from skinfab.placement.edit import middle_of
@@ -111,25 +110,6 @@ def test_a_small_sensor_without_room_beside_it_has_no_name(window, names, monkey
     monkeypatch.setattr(Taken, "share", lambda self, box: 0.2)
     window.view.zoom(32.0 / size_on_screen(window))
     assert names(replace(window.skin, seed=9)) == []
-
-
-def test_a_piece_is_named_where_its_name_hides_no_other(window, monkeypatch):
-    seen = []
-
-    def keep(ground, pen, face):
-        usual = paint_names(ground, pen, face)
-        left, low, right, high = usual[0]
-        crowded = face.copy()
-        crowded[int(pen.height - high) : int(pen.height - low), int(left) : int(right)] = 0
-        seen[:] = [(usual, face), (paint_names(ground, pen, crowded), crowded)]
-        return usual
-
-    monkeypatch.setattr(view_module, "paint_names", keep)
-    window.view.redraw()
-    window.view.surface.draw()
-    (usual, face), (moved, crowded) = seen
-    assert faces_under(usual[0], face) == 0 < faces_under(usual[0], crowded) and usual[0] != moved[0] and usual[1] == moved[1]
-    assert faces_under(moved[0], crowded) == 0, "another corner of the piece is free"
 
 
 def test_seams_too_short_on_the_screen_have_none(window, labels):
