@@ -63,7 +63,7 @@ def test_lines_go_with_the_step_that_outdates_them(session):
 
 def test_nothing_of_one_document_is_said_of_the_next(session, skin):
     Outdated(session)
-    session.report("export", [Problem("wrote 20 files into out", "export", kind="note")])
-    session.open(replace(skin), None)
-    session.do("move C1", change(session.skin, "C1", x=40.0))
+    wrote = Problem("wrote 20 files into out", "export", kind="note")
+    session.report("export", [wrote, Problem("C1 is 1.2 mm outside piece P1", "export")])
+    session.open(change(skin, "C1", x=40.0), None)
     assert session.problems == ()
