@@ -20,6 +20,7 @@ from skinfab.errors import InputError, RefusedError, SkinfabError
 from skinfab.files import atomic_write, explain_os_error
 from skinfab.material import load_material
 from skinfab.placement.check import validate
+from skinfab.placement.lifted import off_words
 from skinfab.skin import Skin
 
 
@@ -77,7 +78,8 @@ def write_skin(skin: Skin, folder: str | Path, *, arcs: Arcs | None = None, prin
     validate(skin, material)
     pieces = [p for p in skin.pieces if skin.sensors_on(p.id)]
     if not pieces:
-        raise InputError("this skin has no sensor, so there is nothing to print; place one first")
+        off = off_words(skin.lifted)
+        raise InputError(f"this skin has no sensor{' in place' * bool(off)}, so there is nothing to print; {(*off, 'place one first')[0]}")
     offsets = [seat(skin, p, printer=printer, material=material) for p in pieces]
     plans = [
         plan(p, skin.sensors_on(p.id), printer=printer, material=material, offset=offset) for p, offset in zip(pieces, offsets, strict=True)

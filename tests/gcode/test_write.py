@@ -17,6 +17,7 @@ from skinfab.material import load_material
 from skinfab.mesh.model import Mesh
 from skinfab.patterns.contact_spiral import ContactSpiral
 from skinfab.pieces import Piece
+from skinfab.placement.lifted import Lifted
 from skinfab.placement.sensor import Sensor
 from skinfab.skin import Skin, Source
 
@@ -30,6 +31,18 @@ def test_written_whole_with_its_summary(planned: Plan, printer: Printer, tmp_pat
     assert lines.arcs == 0 and lines.lines > summary.lines
     assert lines.ink_mm3 == pytest.approx(summary.ink_mm3)
     assert target.read_text() == emit(planned.program, printer, arcs="lines")
+
+
+def test_a_skin_without_sensors_says_which_are_only_off(skin: Skin, tmp_path: Path) -> None:
+    bare = replace(skin, sensors=())
+    with pytest.raises(InputError, match=r"this skin has no sensor, so there is nothing to print; place one first$"):
+        write_skin(bare, tmp_path)
+    off = tuple(Lifted(sensor, skin.pieces[0]) for sensor in skin.sensors)
+    names = ", ".join(sensor.id for sensor in skin.sensors)
+    said = f"no sensor in place, so there is nothing to print; .* off \\({names}\\) and .* in the window, cut so that .* again"
+    with pytest.raises(InputError, match=said):
+        write_skin(replace(bare, lifted=off), tmp_path)
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_faulty_program_is_refused_and_not_written(planned: Plan, printer: Printer, tmp_path: Path) -> None:
