@@ -15,6 +15,7 @@ from skinfab.material import load_material
 from skinfab.mesh.door import load_usable
 from skinfab.mesh.inspect import inspect
 from skinfab.mesh.io import load_mesh
+from skinfab.mesh.model import Mesh
 from skinfab.mesh.repair import clean, repair
 from skinfab.mesh.surface import surface
 from skinfab.mesh.units import guess_units
@@ -26,6 +27,7 @@ from skinfab.progress import Progress, part_of
 from skinfab.seams import partial
 from skinfab.seams.partial import Fault, Reopened
 from skinfab.skin import Skin, Source
+from skinfab.tolerances import REPAIR_HOLE_EDGES
 
 
 @dataclass(frozen=True)
@@ -78,7 +80,10 @@ def look_at_mesh(*, path: Path, progress: Progress) -> MeshFacts:
     cleaned, does = clean(loaded.mesh)
     after = inspect(cleaned.V, cleaned.F) if does else found
     progress(0.8, "trying repair")
-    would_do = repair(cleaned)[1] if after.open_edges or not after.usable else []
+    mended, would_do = repair(cleaned) if after.open_edges or not after.usable else (cleaned, [])
+    faults = after.faults
+    if not would_do or mended.topology.is_boundary.sum() >= after.open_edges:
+        faults = tuple(replace(fault, remedy=_kept_open(cleaned)) if fault.kind == "open edge" else fault for fault in faults)
     extent = float(max(found.size_mm))
     guess = guess_units(extent)
     shape = "closed" if after.closed else f"with {after.boundary_loops} open border{'' if after.boundary_loops == 1 else 's'}"
@@ -90,11 +95,17 @@ def look_at_mesh(*, path: Path, progress: Progress) -> MeshFacts:
         units=guess.units,
         unit_reason=guess.reason.split("; set --units")[0],
         unit_sure=guess.sure,
-        found=tuple(in_window(fault.sentence) for fault in after.faults),
+        found=tuple(in_window(fault.sentence) for fault in faults),
         cleaning_does=tuple(does),
         repair_does=tuple(would_do),
         usable=after.usable,
     )
+
+
+def _kept_open(mesh: Mesh) -> str:
+    """What becomes of holes that repair leaves."""
+    large = all(len(loop) > REPAIR_HOLE_EDGES for loop in mesh.topology.boundary_loops)
+    return "kept as a border" + f"; too large for Repair, which closes holes of up to {REPAIR_HOLE_EDGES} edges" * large
 
 
 def open_mesh(*, path: Path, units: str, mend: bool, wrap_mm: float, printer: str, material: str, progress: Progress) -> Opened:

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from gui.dialogs.open_mesh import ask_how_to_open
@@ -100,3 +101,19 @@ def test_it_tells_of_what_will_be_opened(root, tmp_path):
     assert any("joined" in sentence for sentence in facts.cleaning_does)
     _, said = asked(root, facts, lambda window: window.destroy())
     assert "What reading it mends" in said and "joined" in said and "border" not in said
+
+
+def test_a_hole_that_is_too_large_for_repair_is_not_said_to_be_closed_by_it(tmp_path):
+    """A tube of 40 edges round: repair closes holes of up to 30."""
+    turn = np.linspace(0, 2 * np.pi, 40, endpoint=False)
+    points = [f"v {10 * np.cos(a):.4f} {10 * np.sin(a):.4f} {z}" for z in (0, 20) for a in turn]
+    faces = [f"f {k + 1} {(k + 1) % 40 + 1} {k + 41}\nf {(k + 1) % 40 + 1} {(k + 1) % 40 + 41} {k + 41}" for k in range(40)]
+    (tmp_path / "tube.obj").write_text("\n".join([*points, *faces]) + "\n")
+    facts = look_at_mesh(path=tmp_path / "tube.obj", progress=silent)
+    (said,) = (sentence for sentence in facts.found if "open edge" in sentence)
+    assert facts.repair_does == () and said.endswith("kept as a border; too large for Repair, which closes holes of up to 30 edges")
+
+
+def test_a_hole_that_repair_closes_is_said_to_be(facts):
+    (said,) = (sentence for sentence in facts.found if "open edge" in sentence)
+    assert any("closed holes" in does for does in facts.repair_does) and said.endswith("Repair, when it is opened, closes small holes")
