@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from skinfab.mesh.model import Mesh
 from skinfab.seams.coarse import coarsen, transfer
-from skinfab.seams.creases import borders, crease_seams, merge_small
+from skinfab.seams.creases import crease_seams, without_scraps
 from skinfab.seams.cut import seam_length
 from skinfab.seams.fewest import fewest_seams
 from skinfab.seams.glue import glue_pieces
@@ -44,9 +44,6 @@ _GLUE_EXCESS = 0.1
 
 #: An object that falls into more pieces than this is hardly meant for a skin: the second way is not tried.
 _MANY = 100
-
-#: A transferred scrap under this part of the surface joins its neighbour.
-_SCRAP = 0.002
 
 
 #: On the fine mesh only pieces under this part of the surface are worth trying to glue.
@@ -126,12 +123,7 @@ def _on_fine(mesh: Mesh, small: Mesh, cut: BoolArray, rules: EdgeRules | None, l
         pinned = np.unique(small.topology.E[locked]), np.unique(mesh.topology.E[rules.locked])
         fine = transfer(small, cut & ~locked, mesh, weight=rules.weights(mesh), pinned=pinned)
         fine = (fine & ~rules.forbidden) | rules.locked
-    _, label = mesh.topology.face_components(fine)
-    merged = merge_small(mesh, label, _SCRAP * mesh.area)
-    # Within a piece the seams that part nothing (darts) stay; between pieces only the borders do.
-    EF = mesh.topology.EF
-    inside = (EF[:, 1] >= 0) & (label[EF[:, 0]] == label[EF[:, 1]])
-    fine = (fine & inside) | borders(mesh, merged)
+    fine = without_scraps(mesh, fine)
     return fine if rules is None else fine | rules.locked
 
 

@@ -14,6 +14,9 @@ _SHARP = np.radians(35)
 #: A region smaller than this part of the surface joins its neighbour.
 _LEAST_REGION = 0.01
 
+#: A transferred scrap under this part of the surface joins its neighbour.
+_SCRAP = 0.002
+
 
 def crease_seams(mesh: Mesh, *, forbidden: NDArray[np.bool_] | None = None) -> NDArray[np.bool_]:
     """Sharp edges that part the surface into regions worth a piece, (e,) bool.
@@ -55,6 +58,16 @@ def merge_small(mesh: Mesh, label: NDArray[np.int64], least_area: float) -> NDAr
         area[small], finished[small] = 0.0, True
         finished[into] = area[into] >= least_area
     return label
+
+
+def without_scraps(mesh: Mesh, cut: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """`cut` (e,) without the borders of tiny parts, as they are left between seams taken from another mesh."""
+    _, label = mesh.topology.face_components(cut)
+    merged = merge_small(mesh, label, _SCRAP * mesh.area)
+    # Within a piece the seams that part nothing (darts) stay; between pieces only the borders do.
+    EF = mesh.topology.EF
+    inside = (EF[:, 1] >= 0) & (label[EF[:, 0]] == label[EF[:, 1]])
+    return (cut & inside) | borders(mesh, merged)
 
 
 def borders(mesh: Mesh, label: NDArray[np.int64]) -> NDArray[np.bool_]:

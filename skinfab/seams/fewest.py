@@ -1,7 +1,7 @@
 """The fewest pieces, and little seam: a short slit, then dart after dart, and no more of them than the fine mesh needs.
 
 The darts are found on a mesh of some 1500 triangles, from a few starts. A finer mesh is bent less by each of its triangles
-and shows less d: there the first so many of the darts are taken that do.
+and shows less d: there the last darts are found anew, and mostly fewer of them.
 """
 
 from __future__ import annotations
@@ -11,16 +11,16 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from skinfab.mesh.model import Mesh
 from skinfab.seams.coarse import coarsen, transfer
+from skinfab.seams.creases import without_scraps
 from skinfab.seams.cut import OpenPiece, mesh_edges, open_pieces
 from skinfab.seams.disk import cut_to_disk, far_points
 from skinfab.seams.glue import glue_pieces
 from skinfab.seams.graph import edge_graph, shortest_tree, trace
 from skinfab.seams.growth import Grown, grow_darts, laid_apart, lay_out
-from skinfab.seams.judge import Limits, judge
+from skinfab.seams.judge import Limits, verdict_of
 from skinfab.seams.refine import Judged, refine_seams
 from skinfab.seams.rules import EdgeRules, coarse_rules
 from skinfab.seams.weights import seam_weights
@@ -41,8 +41,9 @@ _STARTS = 3
 #: The first slit is this part of the root of the area long: just enough to lay the rest out.
 _SLIT = 0.25
 
-#: A finer mesh shows hardly less than half of the d above 4 of the coarse one.
-_COARSE_EXCESS = 2.0
+#: A finer mesh shows less d: darts that the coarse one needed for less than so many times what the bound allows above 4 are cut
+#: there only where it needs them too.
+_COARSE_EXCESS = 1.6
 
 #: In the search a flattening need not be driven to the end: d is known to 1 % of what is above 4.
 _SEARCH_DECREASE = 1e-2
@@ -103,16 +104,23 @@ def fewest_seams(
     small = fine if (few := coarsen(mesh, _COARSE_FACES)) is mesh else _level(mesh, few, rules)
     middle = fine if (some := coarsen(mesh, _MIDDLE_FACES)) is mesh else _level(mesh, some, rules)
     plans = _plans(small, limits.mean, lambda done: report(0.5 * done))
-    # A piece too large for the bed is parted in the end; more darts would not make it smaller.
-    flat = Limits(mean=limits.mean)
-    cut = _fewest_that_do(small, plans, middle, flat, lambda done: report(0.5 + 0.2 * done))
-    cut = _carried(middle, cut, fine)
-    forbidden, locked = (None, None) if rules is None else (rules.forbidden, rules.locked)
-    accuracy = {"tolerance": _SEARCH_DECREASE}
-    cut, pieces = refine_seams(
-        mesh, cut, limits, fine.weight, forbidden=forbidden, progress=lambda done: report(0.7 + 0.3 * done), **accuracy
+    cut, pieces = _grown_on(
+        middle, _carried(small, _first_darts(small, plans, limits.mean), middle), limits, lambda done: report(0.5 + 0.3 * done)
     )
-    return glue_pieces(mesh, cut, pieces, limits, neck=neck, excess=np.inf, locked=locked, **accuracy)
+    covered = sum(len(piece.faces) for piece, _ in pieces) == len(mesh.F)
+    if middle is not fine or not covered or not all(verdict.accepted for _, verdict in pieces):
+        forbidden = None if rules is None else rules.forbidden
+        cut, pieces = refine_seams(
+            mesh,
+            _carried(middle, cut, fine),
+            limits,
+            fine.weight,
+            tolerance=_SEARCH_DECREASE,
+            forbidden=forbidden,
+            progress=lambda done: report(0.8 + 0.2 * done),
+        )
+    locked = None if rules is None else rules.locked
+    return glue_pieces(mesh, cut, pieces, limits, neck=neck, excess=np.inf, tolerance=_SEARCH_DECREASE, locked=locked)
 
 
 def _level(mesh: Mesh, here: Mesh, rules: EdgeRules | None) -> _Level:
@@ -130,7 +138,7 @@ def _carried(one: _Level, cut: BoolArray, other: _Level) -> BoolArray:
         return cut
     pinned = np.unique(one.mesh.topology.E[one.locked]), np.unique(other.mesh.topology.E[other.locked])
     carried = transfer(one.mesh, cut & ~one.locked, other.mesh, weight=other.weight, pinned=pinned)
-    return (carried & ~other.forbidden) | other.locked
+    return without_scraps(other.mesh, (carried & ~other.forbidden) | other.locked) | other.locked
 
 
 def _plans(small: _Level, bound: float, report: Callable[[float], None]) -> list[_Plan]:
@@ -188,44 +196,31 @@ def _openings(small: _Level, part: OpenPiece) -> list[IntArray]:
     return slits
 
 
-def _fewest_that_do(small: _Level, plans: list[_Plan], middle: _Level, limits: Limits, report: Callable[[float], None]) -> BoolArray:
-    """Seams on `middle` with as many of each plan's darts as it needs, by bisection; all plans at a time."""
-    high = np.array([len(plan.grown.darts) for plan in plans], dtype=np.int64)
-    if middle is small:  # each dart was cut because it was needed
-        return _with_darts(small, plans, high)
-    enough = 4 + _COARSE_EXCESS * (limits.mean - 4)
-    low = np.array([sum(dart.mean > enough for dart in plan.grown.darts) for plan in plans], dtype=np.int64)
-    owner = np.full(len(small.mesh.F), -1)
-    for k, plan in enumerate(plans):
-        owner[plan.faces] = k
-    centres = cKDTree(small.mesh.V[small.mesh.F].mean(axis=1))
-    rounds = max(int((high - low).max(initial=0)).bit_length(), 1)
-    for k in range(rounds):
-        report(k / rounds)
-        if (low >= high).all():
-            break
-        tried = (low + high) // 2
-        cut = _carried(small, _with_darts(small, plans, tried), middle)
-        does = np.ones(len(plans), dtype=bool)
-        for piece in open_pieces(middle.mesh, cut):
-            whose = _owner(middle, piece, owner, centres)
-            if low[whose] < high[whose] and does[whose]:
-                does[whose] = piece.is_disk and judge(middle.mesh, piece, limits, tolerance=_SEARCH_DECREASE).accepted
-        high = np.where(does, tried, high)
-        low = np.where(does, low, np.minimum(tried + 1, high))
-    return _carried(small, _with_darts(small, plans, high), middle)
-
-
-def _owner(middle: _Level, piece: OpenPiece, owner: IntArray, centres: cKDTree) -> int:
-    """The plan that most of a piece belongs to."""
-    near = owner[centres.query(middle.mesh.V[middle.mesh.F[piece.faces]].mean(axis=1))[1]]
-    return int(np.bincount(near[near >= 0]).argmax()) if (near >= 0).any() else 0
-
-
-def _with_darts(small: _Level, plans: list[_Plan], counts: IntArray) -> BoolArray:
-    cut = small.locked.copy()
-    for plan, count in zip(plans, counts.tolist(), strict=True):
+def _first_darts(small: _Level, plans: list[_Plan], bound: float) -> BoolArray:
+    """Seams with those darts that a finer mesh is likely to need as well."""
+    cut, enough = small.locked.copy(), 4 + _COARSE_EXCESS * (bound - 4)
+    for plan in plans:
         cut[plan.opening] = True
+        # Without gaps, as darts end on the ones before them; kept apart, d is above what it was before.
+        count = max((k + 1 for k, dart in enumerate(plan.grown.darts) if dart.mean > enough), default=0)
         for dart in plan.grown.darts[:count]:
             cut[dart.edges] = True
     return cut
+
+
+def _grown_on(level: _Level, cut: BoolArray, limits: Limits, report: Callable[[float], None]) -> tuple[BoolArray, list[Judged]]:
+    """As many more darts on a finer mesh as it takes there, and its pieces that are disks."""
+    mesh, cut, pieces, done = level.mesh, cut.copy(), [], 0
+    for piece in open_pieces(mesh, cut):
+        report(done / len(mesh.F))
+        done += len(piece.faces)
+        if not piece.is_disk:
+            continue
+        bounds = cut.copy()
+        grown = grow_darts(mesh, lay_out(mesh, piece), limits.mean, level.weight, cut=bounds, forbidden=level.forbidden)
+        if grown.mean <= limits.mean and not grown.good:
+            grown = grow_darts(mesh, laid_apart(mesh, grown), limits.mean, level.weight, cut=bounds, forbidden=level.forbidden)
+        for dart in grown.darts:
+            cut[dart.edges] = True
+        pieces.append((grown.piece, verdict_of(mesh, grown.piece, grown.UV, limits)))
+    return cut, pieces

@@ -39,7 +39,13 @@ _LENGTH_POWER = 0.5
 #: Gain beyond what is wanted counts for nothing; what is foretold is not all had, so this much more is wanted.
 _WANTED = 1.25
 
-#: A start whose darts are this many times as long as another's for the same mean d hardly makes up for it.
+#: A shorter dart is worth no more for that, in parts of the root of the area: many tiny ones would follow.
+_SHORT = 0.05
+
+#: Once this part of the first excess of d is left, starts can be compared: ...
+_SETTLED = 0.1
+
+#: ... one whose darts are this many times as long as another's for the same mean d hardly makes up for it.
 _BEHIND = 1.15
 
 #: A piece with this many darts is better parted.
@@ -155,7 +161,7 @@ def grow_darts(
         edges = mesh_edges(mesh, now.piece, way.edges)
         cut[edges] = True
         parts = open_pieces(mesh, cut, faces=now.piece.faces)
-        if rival is not None and now.length > _BEHIND * rival.length_at(now.mean):
+        if rival is not None and now.mean - 4 < _SETTLED * (start.mean - 4) and now.length > _BEHIND * rival.length_at(now.mean):
             return now
         if len(parts) != 1:  # the boundary touches itself there
             return now
@@ -202,7 +208,8 @@ def _worth(mesh: Mesh, piece: OpenPiece, way: Way, gains: FloatArray, wanted: fl
     edges = mesh_edges(mesh, piece, way.edges)
     length = np.cumsum(mesh.edge_lengths[edges])[way.ends - 1]
     allowed = np.cumsum(forbidden[edges])[way.ends - 1] == 0
-    value: FloatArray = np.minimum(gains, wanted) / length**_LENGTH_POWER * allowed
+    size = float(np.sqrt(mesh.face_areas[piece.faces].sum()))
+    value: FloatArray = np.minimum(gains, wanted) / np.maximum(length, _SHORT * size) ** _LENGTH_POWER * allowed
     return value
 
 

@@ -98,12 +98,12 @@ def test_nothing_helps_when_all_is_forbidden() -> None:
 def test_a_rival_far_ahead_ends_it() -> None:
     mesh = Mesh(*shapes.cap(12))
     none = np.zeros(len(mesh.topology.E), dtype=bool)
-    grown, _ = grow(mesh, 4.02)
+    grown, _ = grow(mesh, 4.005)
     assert grown.length_at(grown.mean) == pytest.approx(grown.length)
     assert grown.length_at(grown.mean - 1e-9) == np.inf and grown.length_at(grown.darts[0].mean) == 0
     quick = replace(grown, darts=tuple(replace(dart, length=dart.length / 3) for dart in grown.darts), length=grown.length / 3)
     start = lay_out(mesh, open_pieces(mesh, none)[0])
-    late = grow_darts(mesh, start, 4.02, seam_weights(mesh), cut=none, forbidden=none, rival=quick)
+    late = grow_darts(mesh, start, 4.005, seam_weights(mesh), cut=none, forbidden=none, rival=quick)
     assert not late.good and len(late.darts) < len(grown.darts)
-    even = grow_darts(mesh, start, 4.02, seam_weights(mesh), cut=none, forbidden=none, rival=grown)
+    even = grow_darts(mesh, start, 4.005, seam_weights(mesh), cut=none, forbidden=none, rival=grown)
     assert even.good and even.length == grown.length
