@@ -57,6 +57,25 @@ def watched(stream: Stream, sensors: Sequence[str], skin: Skin | None) -> tuple[
     return tuple(name for name, kind in zip(stream.names, said, strict=True) if kind == "contact")
 
 
+def unread(sensors: Sequence[str], skin: Skin | None) -> str:
+    """What to say of sensors of the skin that no channel of a stream is of; "" where there is none.
+
+    Parameters
+    ----------
+    sensors : sequence of str
+        The sensor of each channel; none of them where the source is of no skin's sensors at all, and nothing is said.
+    skin : Skin, optional
+    """
+    left = [s for s in skin.sensors if s.id not in sensors] if skin is not None and any(sensors) else []
+    if not left:
+        return ""
+    ids, numbers = (", ".join(map(str, each)) for each in ([s.id for s in left], [s.channel for s in left]))
+    is_one = len(left) == 1
+    return (
+        f"no channel of the source is of {ids} (number{'s' * (not is_one)} {numbers}): no plot and no light of {'it' if is_one else 'them'}"
+    )
+
+
 def label(name: str, sensor: str) -> str:
     """What a strip is called: the sensor first, its channel where that is called otherwise.
 

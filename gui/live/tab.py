@@ -13,7 +13,7 @@ from tkinter import ttk
 from calibration.strain.document import SensorCalibration
 from calibration.strain.reading import Reading
 from gui.live.angle_row import AngleRow
-from gui.live.channels import label, sensors_of, watched
+from gui.live.channels import label, sensors_of, unread, watched
 from gui.live.choices import Choice, LogChoice, PortChoice
 from gui.live.connect import ConnectRow
 from gui.live.feed import Feed, Status
@@ -226,8 +226,7 @@ class LiveTab(ttk.Frame):
             self.log_row.pack(side="bottom", fill="x", before=self.row)
         self.row.enable(record=feed.player is None, pause=feed.player is None)
         self.angle.offer(stream.names)
-        self._name_channels()
-        self._session.report("live notes", [Problem(note, "live notes", kind="note") for note in feed.notes])
+        self._name_channels(feed)
 
     def _show(self, feed: Feed, status: Status) -> None:
         stream = self._stream
@@ -318,13 +317,15 @@ class LiveTab(ttk.Frame):
 
     def _on_skin(self) -> None:
         if self.feed is not None and self._stream is not None:
-            self._name_channels()
+            self._name_channels(self.feed)
             self.feed.watch_for_contacts(self._contact_channels(self._stream))
 
-    def _name_channels(self) -> None:
+    def _name_channels(self, feed: Feed) -> None:
         stream = self._stream
         assert stream is not None
         self._sensors = sensors_of(stream, self._session.skin)
+        notes = (*feed.notes, unread(self._sensors, self._session.skin))
+        self._session.report("live notes", [Problem(note, "live notes", kind="note") for note in notes if note])
         labels = [label(name, sensor) for name, sensor in zip(stream.names, self._sensors, strict=True)]
         self.plots.begin(stream, labels, angle=self.angle.calibration is not None and bool(self.angle.channel.get()))
 
@@ -336,7 +337,7 @@ class LiveTab(ttk.Frame):
     def _calibrate(self, calibration: SensorCalibration | None, channel: str) -> None:
         if self.feed is not None and self._stream is not None:
             self.feed.calibrate(calibration, channel)
-            self._name_channels()
+            self._name_channels(self.feed)
 
     def _pause(self, paused: bool) -> None:
         """Curves, colours, readings and lights stand still; what comes is kept and recorded all the same."""

@@ -89,8 +89,8 @@ class Watch:
         if not self.rate_hz:
             return f"counting frames for {COUNTED_S:g} s"
         if waiting := self.waiting:
-            return f"contacts not seen yet on {_some(waiting)}, which have not been at rest for {STILL_S:g} s"
-        return f"frozen: {_some(self.frozen)}" if self.frozen else ""
+            return f"contacts not seen yet on channel{'s' * (len(waiting) > 1)} {_some(waiting)}, not at rest for {STILL_S:g} s"
+        return f"frozen: channel{'s' * (len(self.frozen) > 1)} {_some(self.frozen)}" if self.frozen else ""
 
     def calibrate(self, calibration: SensorCalibration | None, channel: str = "") -> None:
         """Give out angles from now on, or none any more.

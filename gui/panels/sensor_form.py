@@ -67,7 +67,7 @@ class SensorForm(ttk.Frame):
             return
         if sensor.pattern.kind != self._kind:
             self._build(sensor)
-        shown: dict[str, float] = {"x": sensor.x, "y": sensor.y, "angle": math.degrees(sensor.angle) % 360, "channel": sensor.channel}
+        shown: dict[str, float] = {"x": sensor.x, "y": sensor.y, "angle": _turn(sensor.angle), "channel": sensor.channel}
         shown |= {f"param_{name}": value for name, value in parameters(sensor.pattern).items()}
         for name, value in shown.items():
             if name in self._switches:
@@ -206,3 +206,14 @@ def _two_columns(master: tk.Misc, name: str) -> ttk.Frame:
 def _words(known: Prediction) -> str:
     r = known.resistance
     return f"{known.length:.1f} mm long, {known.ink_mm3:.0f} mm³ of ink\nR0 {r.median:.0f} kohm (nine in ten: {r.low:.0f} to {r.high:.0f})"
+
+
+def _turn(angle: float) -> float:
+    """Degrees as they are shown, from 0 to below 360.
+
+    Examples
+    --------
+    >>> _turn(-1e-9), _turn(math.pi / 2), _turn(-math.pi / 2)
+    (0.0, 90.0, 270.0)
+    """
+    return round(math.degrees(angle) % 360, 3) % 360

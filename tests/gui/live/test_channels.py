@@ -1,6 +1,6 @@
 from dataclasses import replace
 
-from gui.live.channels import sensors_of, watched
+from gui.live.channels import sensors_of, unread, watched
 from skinfab.patterns.registry import make_pattern
 from skinfab.placement.sensor import Sensor
 from skinfab.readout.frame import Channel, Stream
@@ -33,3 +33,10 @@ def test_only_what_measures_contact_is_watched(skin):
     bend = Sensor("S1", "P1", make_pattern("strain-lines", {"l1": 53, "l2": 43, "b": 6}), 10.0, 10.0, 0.0, 2)
     mixed = replace(skin, sensors=(*skin.sensors, bend))
     assert watched(plain, sensors_of(plain, mixed), mixed) == ("a", "b")
+
+
+def test_sensors_that_no_channel_is_of_are_told(skin):
+    assert unread(("C1", "C2"), skin) == unread(("", ""), skin) == unread(("C1",), None) == ""
+    assert unread(("C1", ""), skin) == "no channel of the source is of C2 (number 1): no plot and no light of it"
+    three = replace(skin, sensors=(*skin.sensors, replace(skin.sensors[0], id="C3", channel=7)))
+    assert unread(("C1", ""), three) == "no channel of the source is of C2, C3 (numbers 1, 7): no plot and no light of them"

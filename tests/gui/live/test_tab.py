@@ -163,6 +163,10 @@ def test_strips_are_called_by_the_sensors_and_a_click_selects_one(window):
     changed = replace(window.session.skin, sensors=(replace(window.session.skin.sensors[0], channel=1),))
     window.session.do("change", changed)
     window.until(lambda: canvas.itemcget("name1", "text") == "C1 (S2)")
+    assert not any("no channel" in p.text for p in window.session.problems)
+    far = replace(window.session.skin.sensors[0], id="C9", channel=9)
+    window.session.do("one more", replace(window.session.skin, sensors=(*window.session.skin.sensors, far)))
+    assert any("C9 (number 9)" in p.text for p in window.session.problems)
 
 
 def test_a_log_is_scrubbed_and_its_lights_follow(window):
