@@ -6,8 +6,10 @@ import itertools
 import json
 import math
 import time
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -286,33 +288,43 @@ def plain(logs: Path) -> Path:
     return path
 
 
-def judged_on(model: Path, plain: Path, table: list[str]) -> tuple[dict, list[str]]:  # type: ignore[type-arg]
-    (plain.parent / "l.csv").write_text("\n".join(line.replace("participant-1.csv", "plain.csv") for line in table) + "\n")
+Asked = Callable[[list[str]], tuple[dict[str, Any], list[str]]]
+
+
+@pytest.fixture(scope="module")
+def judged_on(model: Path, plain: Path) -> Asked:
+    """What a table's trials of that log come to."""
     content, log = load_nail(model), read_log(plain)
     pace = pace_of(log.recording)
     told, _ = decide_log(content.model, log.recording, samples=33, every=64, pace=pace)
-    facts, notes = judged(plain.parent / "l.csv", log, told, 33, content, pace)
-    return facts["labels"], notes
+
+    def ask(table: list[str]) -> tuple[dict[str, Any], list[str]]:
+        path = plain.parent / "l.csv"
+        path.write_text("\n".join(line.replace("participant-1.csv", "plain.csv") for line in table) + "\n")
+        facts, notes = judged(path, log, told, 33, content, pace)
+        return facts["labels"], notes
+
+    return ask
 
 
-def test_the_same_readings_in_another_file_do_not_judge(logs: Path, model: Path, plain: Path) -> None:
-    labels, notes = judged_on(model, plain, (logs / "labels.csv").read_text().splitlines())
+def test_the_same_readings_in_another_file_do_not_judge(logs: Path, judged_on: Asked) -> None:
+    labels, notes = judged_on((logs / "labels.csv").read_text().splitlines())
     assert (labels["trials"], labels["learned_from"]) == (12, 28)
     assert "the model learned from 28 of the 40 trials, which are not counted" in notes
 
 
-def test_a_table_that_does_not_go_with_the_log_is_told(logs: Path, model: Path, plain: Path) -> None:
+def test_a_table_that_does_not_go_with_the_log_is_told(logs: Path, judged_on: Asked) -> None:
     head, *rows = (logs / "labels.csv").read_text().splitlines()[1:]
     own = [row.split(",") for row in rows if row.startswith("participant-1.csv")]
     late = [",".join([row[0], f"{float(row[1]) + 5:.6f}", f"{float(row[2]) + 5:.6f}", *row[3:]]) for row in own]
-    labels, notes = judged_on(model, plain, [head, *late])
+    labels, notes = judged_on([head, *late])
     assert labels["beyond"] == 28
     assert any("28 of the 40 rows of l.csv end after the log does, at 7.314 s, and count nowhere" in note for note in notes)
     name = next(row[3] for row in own if row[3] != "none")
-    labels, notes = judged_on(model, plain, [head, *(",".join(row).replace(f",{name},", ",thumb,") for row in own)])
+    labels, notes = judged_on([head, *(",".join(row).replace(f",{name},", ",thumb,") for row in own)])
     assert "the model knows no thumb: 2 of the 12 trials can never be right" in notes
     short = [",".join([*row[:2], f"{float(row[1]) + 0.01:.6f}", *row[3:]]) for row in own]
-    labels, notes = judged_on(model, plain, [head, *short])
+    labels, notes = judged_on([head, *short])
     assert labels["trials"] == 0 and "no trial has a window of 33 readings that could be decided, and counts nowhere; see --window" in notes
 
 

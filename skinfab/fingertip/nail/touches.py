@@ -38,7 +38,10 @@ def touches_of(labels: Sequence[Label]) -> tuple[list[str], list[str]]:
         if (a.log, a.participant, a.label) == (b.log, b.participant, b.label) and b.start_s - a.end_s < _NO_TIME_S:
             joined[k] = joined[before]
     # A class of one touch could not be held out at all.
-    alone = {each.label for each in labels if len({joined[k] for k, other in enumerate(labels) if other.label == each.label}) == 1}
+    of: dict[str, set[str]] = {}
+    for name, each in zip(joined, labels, strict=True):
+        of.setdefault(each.label, set()).add(name)
+    alone = {label for label, names in of.items() if len(names) == 1}
     out = [own if each.label in alone else one for own, one, each in zip(out, joined, labels, strict=True)]
     touches = len({out[k] for k in unnamed})
     follow = ", where those of one label that follow one another without a gap are one" if touches < len(unnamed) else ", one each"

@@ -286,6 +286,7 @@ def judge(made: Prepared, splits: Sequence[Split], *, samples: int | None = WIND
     """
     truth, said, groups = [], [], []
     errors = []
+    names = [each.label.participant for each in made.trials] if across else _groups(made.trials)
     for train, test in splits:
         if published:
             decided = [_by_histograms(made.fit_published(train), made.trials[k].values) for k in test]
@@ -294,7 +295,7 @@ def judge(made: Prepared, splits: Sequence[Split], *, samples: int | None = WIND
             decided, estimates = _by_phasors(made, train, test, samples, across)
         truth += [made.names[made.classes[k]] for k in test]
         said += [made.names[k] for k in decided]
-        groups += [made.trials[k].label.participant if across else _groups(made.trials)[k] for k in test]
+        groups += [names[k] for k in test]
         errors.append(estimates)
     both = np.concatenate(errors)
     right = np.array([a == b for a, b in zip(truth, said, strict=True)])
