@@ -10,11 +10,13 @@ from typing import Any
 from gcode import export
 from gcode.emit import Arcs
 from gcode.export import Drawing, Exported, Folder
+from gcode.used import used_by
 from gui.actions import Action
 from gui.desk import Desk
 from gui.jobs.runner import Job
 from gui.state.problem import Problem
 from gui.toolpath.choice import ARCS, ArcsChoice
+from skinfab.placement.check import validate
 from skinfab.skin import Skin
 
 #: How often it is looked whether an export was cancelled, ms.
@@ -102,10 +104,11 @@ class ExportCommands:
 
     def report(self) -> None:
         """One page."""
-        self._into_file(".html", "Export the report", "_report", export.export_report)
+        if self._ready() and self._may_be_printed():
+            self._into_file(".html", "Export the report", "_report", export.export_report)
 
     def _into_folder(self, what: Folder, title: str, label: str, function: Callable[..., Exported], **arguments: Any) -> None:
-        if not self._ready():
+        if not (self._ready() and (what == "moulds" or self._may_be_printed())):
             return
         folder = self._desk.dialogs.folder(title)
         if folder is None:
@@ -138,6 +141,11 @@ class ExportCommands:
         if job is not None:
             self._desk.complain("export", f"{job.label} is still going on; export once it is done, or cancel it first")
         return job is None
+
+    def _may_be_printed(self) -> bool:
+        """Whether all sensors fit: nobody is asked for a place for files that cannot be written."""
+        skin = self._desk.skin
+        return self._desk.guarded("export", lambda: validate(skin, used_by(skin).material))
 
     def _may_overwrite(self, folder: Path, there: Sequence[str], *, all_of_them: bool) -> bool:
         listed = ", ".join(there[:_NAMED]) + (f" and {len(there) - _NAMED} more" if len(there) > _NAMED else "")

@@ -183,6 +183,7 @@ def test_a_refused_check_is_a_sentence(window, skin, tmp_path):
         window.do(id, tmp_path / "out")
         (sentence,) = window.problems("error")
         assert "C1" in sentence and window.said[-1] == sentence
+    assert window.answers.asked == [], "nobody is asked where to write what cannot be written"
     assert list(tmp_path.iterdir()) == []
     # It goes once all is well.
     window.session.undo()
