@@ -73,6 +73,7 @@ def train(args: argparse.Namespace) -> int:
     ]
     simulated, model = any(log.simulated for log in logs), trained.model
     notes = [note for log in logs for note in log.notes]
+    notes += [f"{said}; it was left out, so mend the table of places or touch there again" for said in trained.left_out]
     if not trained.helps:
         notes.append("places held out are found no better by a learned matrix, so the readings stay as they are; the noise was learned")
     result = {
@@ -86,6 +87,7 @@ def train(args: argparse.Namespace) -> int:
             "worst_after": trained.worst_after_mm,
         },
         "helps": trained.helps,
+        "left_out": list(trained.left_out),
         "matrix": model.matrix.tolist(),
         "noise": {"force_n": model.noise.force_n, "moment_nmm": model.noise.moment_nmm},
         "made_from": made_from,

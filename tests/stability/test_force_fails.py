@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from skinfab.errors import RefusedError
 from skinfab.fingertip.force.contact import Hemisphere, locate
 from skinfab.fingertip.force.contact_mesh import TipMesh
 from skinfab.fingertip.force.grasp import CUBOID, LEARNED, NEW, OVER, PAPER, SHAPES, HandScene, Solid, simulate_grasp, touches
@@ -12,6 +13,9 @@ from skinfab.fingertip.force.motion_simulator import grasp_log
 from skinfab.fingertip.force.reconstruct import published, reconstruct
 from skinfab.fingertip.force.shape import NONE, ShapeModel, decide, features_of, fit_shapes, misfit_limits
 from skinfab.fingertip.force.tare import tared
+from skinfab.fingertip.force.touch_fit import fit_matrix, found_at
+from skinfab.fingertip.force.touch_model import learn_touches, touches_of
+from skinfab.fingertip.force.touch_simulator import simulate_touches
 from skinfab.mesh.model import Mesh
 
 RNG = np.random.default_rng(0)
@@ -217,3 +221,28 @@ def test_a_centre_that_is_off_ruins_single_sides_and_spares_those_felt_from_both
     off = reconstruct(touches(grasp), CUBOID, grasp.centre + 6.0)
     apart = np.abs(np.subtract.outer(off.size, PAPER[2].size)).min(axis=1)  # each side from the true one nearest to it
     assert apart.min() < 0.01 and np.abs(np.sort(off.size) - PAPER[2].size).max() > 5
+
+
+def test_two_exchanged_touches_spoil_the_matrix_of_plain_least_squares_and_are_named() -> None:
+    logs, places = simulate_touches(12, seed=3)
+    said = places | {"touch-1.csv": places["touch-6.csv"], "touch-6.csv": places["touch-1.csv"]}
+    told = learn_touches(logs, said, Hemisphere())
+    plainly, _ = fit_matrix(touches_of(logs, said, Hemisphere())[0])
+    off = {}
+    right, _ = touches_of(logs, places, Hemisphere())
+    for name, matrix in (("as read", np.eye(6)), ("plain", plainly), ("told", told.model.matrix)):
+        off[name] = np.median([found_at(matrix, touch, Hemisphere())[1] for touch in right])
+    assert off["plain"] > 1.5 * off["told"] and off["as read"] > 2 * off["told"] and told.worst_after_mm < 2
+    assert told.places == 10 and {each.split()[0] for each in told.left_out} == {"touch-1.csv", "touch-6.csv"}
+    assert all("at the place of touch-" in each for each in told.left_out)
+
+
+def test_a_wrong_row_among_places_costs_its_touch_alone_and_many_are_refused_by_name() -> None:
+    logs, places = simulate_touches(10, seed=4)
+    wrong = places | {"touch-4.csv": np.array([0.0, 0.0, 20.0])}
+    assert [each.split()[0] for each in learn_touches(logs, wrong, Hemisphere()).left_out] == ["touch-4.csv"]
+    assert not learn_touches(logs, places, Hemisphere()).left_out
+    names = list(places)
+    exchanged = wrong | {names[0]: places[names[9]], names[9]: places[names[0]]}
+    with pytest.raises(RefusedError, match=r"3 of 10 touches are not where .*touch-1\.csv is .*touch-4\.csv"):
+        learn_touches(logs, exchanged, Hemisphere())

@@ -20,13 +20,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skinfab.errors import InputError, RefusedError
-from skinfab.fingertip.force.contact import LEAST_FORCE_N, Hemisphere, locate
-from skinfab.fingertip.force.gravity import cross_matrices
+from skinfab.fingertip.force.contact import LEAST_FORCE_N, Hemisphere
 from skinfab.fingertip.force.logs import WrenchLog
 from skinfab.fingertip.force.tare import tared
+from skinfab.fingertip.force.touch_fit import Touch, fit_matrix, found_at, held_out, touch_of, touches_apart
 from skinfab.fingertip.force.wrench import SensorNoise
 from skinfab.fingertip.saved import load_model, save_model
-from skinfab.fingertip.splits import leave_one_out
 from skinfab.spreadsheet import read_csv_lines
 
 if TYPE_CHECKING:
@@ -38,18 +37,12 @@ KIND = "force contact"
 HEAD = ("log", "x_mm", "y_mm", "z_mm")
 #: Fewer places than this leave most of the matrix to what is believed beforehand.
 LEAST_PLACES = 6
-#: How far a mark on the fingertip is from where it is thought to be, mm along each axis.
-PLACE_SD_MM = 0.3
-#: What is believed of a sensor before it was touched, as standard deviations: how far its origin lies off, mm, ...
-_MOUNT_MM = 2.0
-#: ... and how far it is turned, or one of its axes reads others of the same kind, as a part: 3 degrees, or 5 %.
-_PART = 0.05
-#: An arm at which a moment counts as a force, mm: the fingertip's size.
-_ARM_MM = 20.0
 #: Samples are taken together over this time, s.
 _BLOCK_S = 0.05
 #: Contacts that are farther off than this after all, mm (median, places held out), were not made where they are said to be.
 _WORST_MM = 3.0
+#: More of the touches than this part may not be left out: it is no longer clear who is right.
+_MOST_APART = 0.25
 _MAX_BYTES = 10_000_000
 
 
@@ -99,6 +92,9 @@ class Trained:
         Median over places, of each its median over samples.
     worst_before_mm, worst_after_mm : float, mm
     places : int
+        That were learned from.
+    left_out : tuple of str
+        Touches that are not where they are said to be, in words; they were not learned from and are not in these figures.
     """
 
     model: TouchModel
@@ -107,6 +103,7 @@ class Trained:
     worst_before_mm: float
     worst_after_mm: float
     places: int
+    left_out: tuple[str, ...] = ()
 
     @property
     def helps(self) -> bool:
@@ -148,7 +145,7 @@ def learn_touches(
     InputError
         A log has no place, a place is not on the fingertip, too few places or a log without a touch.
     RefusedError
-        Touches held out are found far from their places all the same.
+        Touches held out are found far from their places all the same, or more than a quarter of them is not where it is said to be.
 
     Examples
     --------
@@ -161,31 +158,50 @@ def learn_touches(
         raise InputError(f"the table of places has no row for {missing}; add one: {missing},X,Y,Z")
     if len({tuple(np.round(places[log.name], 3)) for log in logs}) < LEAST_PLACES:
         raise InputError(f"{len(logs)} touches are at fewer than {LEAST_PLACES} different places; touch the fingertip all over")
-    rests, touched = [], []
-    for log in logs:
-        place = np.asarray(places[log.name], dtype=float)
-        _require_on(place, surface, log.name)
-        rest = log.time < log.time[0] + rest_s
-        read = tared(log, seconds=rest_s)
-        rests.append(np.hstack([read.force[rest], read.moment[rest]]))
-        touched.append((place, _blocks(read)))
-    own = np.sqrt(np.vstack([each - each.mean(axis=0) for each in rests]).var(axis=0))
-    noise = SensorNoise(float(np.sqrt((own[:3] ** 2).mean())), float(np.sqrt((own[3:] ** 2).mean())))
-    before = [_off(np.eye(6), place, w, surface) for place, w in touched]
-    after = []
-    for train, (k,) in leave_one_out(list(range(len(touched)))):
-        matrix = _matrix([touched[j] for j in train], noise)
-        place, w = touched[k]
-        after.append(_off(matrix, place, w, surface))
+    touches, noise = touches_of(logs, places, surface, rest_s=rest_s)
+    apart = touches_apart(touches, surface)
+    kept = [touch for k, touch in enumerate(touches) if k not in apart]
+    before = [found_at(np.eye(6), touch, surface)[1] for touch in kept]
+    after = held_out(kept, surface)
     middle = (float(np.median(before)), float(np.median(after)))
     if not min(middle) <= _WORST_MM:
         raise RefusedError(
             f"touches held out are found {middle[1]:.1f} mm from their places (as read: {middle[0]:.1f} mm), so one does not belong to the "
             "other; are the places in the sensor's frame and in mm, and is the force's sign that of the force on the fingertip?"
         )
+    matrix, _ = fit_matrix(kept)
+    out = tuple(_elsewhere(touches[k], matrix, places, surface) for k in apart)
+    if len(apart) > _MOST_APART * len(touches) or len({tuple(np.round(touch.place, 3)) for touch in kept}) < LEAST_PLACES:
+        raise RefusedError(
+            f"{len(apart)} of {len(touches)} touches are not where the table says: {'; '.join(out)}; mend the table, or touch again"
+        )
     helps = middle[1] < middle[0]
-    model = TouchModel(_matrix(touched, noise) if helps else np.eye(6), noise, named(surface))
-    return Trained(model, *middle, max(before), max(after), len(touched))
+    model = TouchModel(matrix, noise, named(surface)) if helps else TouchModel(np.eye(6), noise, named(surface))
+    return Trained(model, *middle, max(before), max(after), len(kept), out)
+
+
+def touches_of(
+    logs: Sequence[WrenchLog], places: Mapping[str, FloatArray], surface: Hemisphere | TipMesh, *, rest_s: float = 0.5
+) -> tuple[list[Touch], SensorNoise]:
+    """What each log says, its offset off, and how noisy the sensor is while it rests."""
+    rests, read = [], []
+    for log in logs:
+        _require_on(np.asarray(places[log.name], dtype=float), surface, log.name)
+        clean = tared(log, seconds=rest_s)
+        rest = log.time < log.time[0] + rest_s
+        rests.append(np.hstack([clean.force[rest], clean.moment[rest]]))
+        read.append(_blocks(clean))
+    own = np.sqrt(np.vstack([each - each.mean(axis=0) for each in rests]).var(axis=0))
+    noise = SensorNoise(float(np.sqrt((own[:3] ** 2).mean())), float(np.sqrt((own[3:] ** 2).mean())))
+    return [touch_of(log.name, np.asarray(places[log.name], dtype=float), w, noise) for log, w in zip(logs, read, strict=True)], noise
+
+
+def _elsewhere(touch: Touch, matrix: FloatArray, places: Mapping[str, FloatArray], surface: Hemisphere | TipMesh) -> str:
+    """How far a touch is from its place, and at whose it is instead."""
+    point, off = found_at(matrix, touch, surface)
+    near, name = min((float(np.linalg.norm(place - point)), name) for name, place in places.items())
+    at = f"the place of {name}" if near <= _WORST_MM and name != touch.name else ", ".join(f"{x:.1f}" for x in point)
+    return f"{touch.name} is {off:.1f} mm off, at {at}"
 
 
 def _require_on(place: FloatArray, surface: Hemisphere | TipMesh, name: str) -> None:
@@ -212,41 +228,6 @@ def _blocks(log: WrenchLog) -> FloatArray:
         raise InputError(f"{log.name}: nothing pushes with {LEAST_FORCE_N:g} N or more after its rest; touch the fingertip there")
     means: FloatArray = blocks[pushed].mean(axis=1)
     return means
-
-
-def _matrix(touched: Sequence[tuple[FloatArray, FloatArray]], noise: SensorNoise) -> FloatArray:
-    """The most likely matrix: departures from the unit one and errors of the places are weighed as they are believed."""
-    rows, wanted = [], []
-    count = 36 + 3 * len(touched)
-    for k, (place, w) in enumerate(touched):
-        arm = cross_matrices(place[None])[0]
-        # m + E_m w - p x (f + E_f w) - d x f = 0, for E's rows one after another and the place's error d.
-        take = np.hstack([-arm, np.eye(3)])
-        weight = np.linalg.inv(np.linalg.cholesky(noise.force_n**2 * arm @ arm.T + noise.moment_nmm**2 * np.eye(3) + _tiny(noise)))
-        design = np.zeros((len(w), 3, count))
-        design[:, :, :36] = (take[None, :, :, None] * w[:, None, None, :]).reshape(len(w), 3, 36)
-        design[:, :, 36 + 3 * k : 39 + 3 * k] = cross_matrices(w[:, :3])
-        rows.append((weight @ design).reshape(-1, count))
-        wanted.append((weight @ -(w @ take.T)[:, :, None]).ravel())
-    believed = np.full((6, 6), _PART)
-    believed[3:, :3] = _MOUNT_MM
-    believed[:3, 3:] = _PART / _ARM_MM
-    sd = np.concatenate([believed.ravel(), np.full(count - 36, PLACE_SD_MM)])
-    A, b = np.vstack(rows) * sd, np.concatenate(wanted)
-    found = sd * np.linalg.solve(A.T @ A + np.eye(count), A.T @ b)
-    return np.asarray(np.eye(6) + found[:36].reshape(6, 6))
-
-
-def _tiny(noise: SensorNoise) -> FloatArray:
-    """So that a sensor without any noise has a weight too."""
-    return np.eye(3) * (1e-6 + 1e-6 * noise.moment_nmm**2)
-
-
-def _off(matrix: FloatArray, place: FloatArray, w: FloatArray, surface: Hemisphere | TipMesh) -> float:
-    """Median distance of a touch's contacts from its place."""
-    acts = np.ascontiguousarray(w @ matrix.T)
-    found = locate(acts[:, :3], acts[:, 3:], surface, least_force=0.0)
-    return float(np.median(np.linalg.norm(found.point - place, axis=1)))
 
 
 def read_places(path: str | Path) -> dict[str, FloatArray]:
