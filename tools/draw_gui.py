@@ -11,6 +11,7 @@ import json
 import sys
 import tempfile
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -29,6 +30,8 @@ from skinfab.skin import Skin, Source  # noqa: E402
 MESH = ROOT / "meshes/robot_finger.obj"
 #: A picture is taken once the screen has stayed the same for so long, s; so many times it is looked whether it has.
 _CALM_S, _TRIES = 1.0, 8
+#: What lasts a second only is tried for so many times.
+_CATCHES = 40
 
 FORM = ".body.middle.side.forms"
 TABS = ".body.middle.tabs"
@@ -61,6 +64,22 @@ class Album:
                 break
             before = now
             time.sleep(_CALM_S)
+        self._keep(path)
+
+    def catch(self, window: Window, name: str, seen: Callable[[], str]) -> None:
+        """The screen while something is seen in the window, for some time before and still after."""
+        path = self.folder / f"gui_{name}_{self.theme}.png"
+        for _ in range(_CATCHES):
+            before = until(seen, f"what {name} is to show")
+            rest(window, 3)  # all parts of the window have followed by then
+            self.screen.picture(path)
+            if seen() == before:
+                break
+        else:
+            raise AssertionError(f"{name}: never seen long enough in {_CATCHES} times")
+        self._keep(path)
+
+    def _keep(self, path: Path) -> None:
         with Image.open(path) as full:
             full.convert("RGB").quantize(256, dither=Image.Dither.NONE).save(path, optimize=True)
 
@@ -149,9 +168,16 @@ def tabs(album: Album, window: Window) -> None:
     window.press(button)
     until(lambda: window.text(button) == "Disconnect", "the simulator")
     rest(window, 60)  # some seconds of readings
-    album.take(window, "live")
+    album.catch(window, "live", lambda: touched(window))
     window.press(button)
     choose_tab(window, "Flat skin")
+
+
+def touched(window: Window) -> str:
+    """The readings that say that their sensor is touched."""
+    canvas = f"{TABS}.live.plots.canvas"
+    texts = window.tcl(f'join [lmap i [{canvas} find all] {{expr {{[{canvas} type $i] eq "text" ? [{canvas} itemcget $i -text] : ""}}}}] |')
+    return "|".join(text.split(",")[0] + f" {k}" for k, text in enumerate(texts.split("|")) if text.startswith("touched"))
 
 
 def rest(window: Window, tenths: int) -> None:
