@@ -240,6 +240,10 @@ PIN_AREA = (0.25, 3.0)
 #: A pin's tip is looked for within this part of the distance to its nearest neighbour: from a half on it could be the neighbour's.
 PIN_REACH = 0.55
 
+#: Rounds in which pins that were not found are looked for beside their neighbours: three find all there are where tips scatter by 0.3 mm;
+#: in a frame full of specks each would find a speck or two more, in as many rounds as there are pins.
+PIN_ROUNDS = 4
+
 #: So many neighbours say where a pin that is not found has gone: those round it in a hexagonal pattern.
 PIN_NEIGHBOURS = 6
 

@@ -160,3 +160,26 @@ def test_opencv_says_nothing_of_its_own(pressed: Path, tmp_path: Path, capfd: py
     with pytest.raises(InputError, match="no video that can be read"):
         VideoImages(tmp_path / "cut.mp4")
     assert capfd.readouterr().err == ""
+
+
+def test_what_was_learned_of_two_greys_is_read_as_jpeg_and_as_video(tmp_path: Path) -> None:
+    each = list(labelled(Fingertip(), 60, reach_mm=3))
+    greys = [np.where(one.image > 128, 255, 0).astype(np.uint8) for one in each]
+    model = train(greys[:40], [one.edge for one in each[:40]])
+    writer = cv2.VideoWriter(str(tmp_path / "some.avi"), cv2.VideoWriter_fourcc(*"MJPG"), RATE, (240, 240), False)
+    for kind in ("png", "jpg"):
+        (tmp_path / kind).mkdir()
+    for k, grey in enumerate(greys):
+        writer.write(grey)
+        for kind in ("png", "jpg"):
+            cv2.imwrite(str(tmp_path / f"{kind}/{k}.{kind}"), grey)
+    writer.release()
+    felt = []
+    for images in (FolderImages(tmp_path / "png"), FolderImages(tmp_path / "jpg"), VideoImages(tmp_path / "some.avi")):
+        with EdgeSource(images, model) as source:
+            felt.append(np.array([frame.values for frame in source]))
+    assert np.median(felt[0][:, 3]) > 0.5
+    for other in felt[1:]:
+        offset, depth, angle, confidence = (other - felt[0]).T
+        assert np.abs(offset).max() < 0.2 and np.abs(depth).max() < 0.1 and np.abs(confidence).max() < 0.3
+        assert np.abs((angle + 180) % 360 - 180)[felt[0][:, 3] > 0.5].max() < 5

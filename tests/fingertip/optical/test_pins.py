@@ -1,5 +1,6 @@
 """Pins are found where they are, and each is given its own tip, also when some are hidden or all have moved far."""
 
+import cv2
 import numpy as np
 import pytest
 
@@ -7,6 +8,7 @@ from skinfab.errors import InputError
 from skinfab.fingertip.optical.pins import Pins, find_tips, level_of, require_image
 from skinfab.fingertip.optical.plates import HalfPlane
 from skinfab.fingertip.optical.simulator import NO_ERRORS, Fingertip
+from skinfab.tolerances import PIN_ROUNDS
 
 
 @pytest.fixture(scope="module")
@@ -64,6 +66,26 @@ def test_specks_and_the_rim_are_no_pins(tip: Fingertip, pins: Pins) -> None:
     image[2, 2] = image[5, 200] = 255
     image[-4:] = 255
     assert len(find_tips(image, pins.level)) == len(tip.rest)
+
+
+def test_the_level_lies_midway_so_that_another_coding_is_read_alike(tip: Fingertip) -> None:
+    two = np.where(tip.image(tip.rest) > 128, 255, 0).astype(np.uint8)
+    assert level_of([two]) == 127 and level_of([two // 2 + 10]) in (73, 74)
+    pins = Pins.of_rest(two)
+    grey = np.clip(two + np.random.default_rng(0).normal(0, 8, two.shape), 0, 255).astype(np.uint8)
+    coded = cv2.imdecode(cv2.imencode(".jpg", two, [cv2.IMWRITE_JPEG_QUALITY, 90])[1], cv2.IMREAD_GRAYSCALE)
+    for other in (grey, coded, cv2.GaussianBlur(two, (3, 3), 0)):
+        found = pins.track(other)
+        assert not found.missing.any() and found.spare == 0 and np.abs(found.moved).max() < 0.2
+
+
+def test_each_round_finds_pins_beside_those_of_the_last_and_there_are_few_rounds() -> None:
+    """A row of pins, each gone 2.5 pixels farther than the one before: three are in reach, then one more a round."""
+    k = np.arange(16.0)
+    pins = Pins(np.c_[10 * k + 20, np.full(16, 50.0)], (120, 200), 100)
+    found = pins.match(pins.rest + np.c_[0 * k, 2.5 * k])
+    assert found.missing.tolist() == (k >= 3 + PIN_ROUNDS).tolist() and found.spare == found.missing.sum()
+    np.testing.assert_allclose(found.moved[~found.missing, 1], 2.5 * k[~found.missing])
 
 
 def test_usual_places_stand_for_rest() -> None:
