@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from skinfab.cli import steps
 
 if TYPE_CHECKING:
-    from skinfab.fingertip.optical.images import ImageSource, Picture
+    from skinfab.fingertip.optical.images import ImageSource
     from skinfab.readout.frame import Frame
 
 FILES = ("edges.csv", "optical.png", "result.json")
@@ -64,7 +64,7 @@ def run(args: argparse.Namespace) -> int:
     with staged_folder(args.output) as folder:
         atomic_write(folder / "edges.csv", _table(felt, simulated))
         atomic_write(folder / "result.json", json.dumps(result, indent=1, allow_nan=False) + "\n")
-        draw_run([p.device_time for p, _ in felt], edges, folder / "optical.png", title=source.images.name, simulated=simulated)
+        draw_run([frame.device_time for _, frame in felt], edges, folder / "optical.png", title=source.images.name, simulated=simulated)
     if args.json:
         print(json.dumps(result, allow_nan=False))
         return 0
@@ -92,9 +92,9 @@ def _images(args: argparse.Namespace) -> ImageSource:
     return VideoImages(args.images)
 
 
-def _felt(args: argparse.Namespace, source: Any) -> tuple[list[tuple[Picture, Frame]], list[float]]:
-    """Every picture with its frame, and how long each took from picture to edge, ms."""
-    felt: list[tuple[Picture, Frame]] = []
+def _felt(args: argparse.Namespace, source: Any) -> tuple[list[tuple[str, Frame]], list[float]]:
+    """Every picture's name and frame (not the picture: a camera would fill the memory), and how long each took from picture to edge, ms."""
+    felt: list[tuple[str, Frame]] = []
     spent: list[float] = []
     end = time.monotonic() + (args.seconds or math.inf)
     with source:
@@ -103,7 +103,7 @@ def _felt(args: argparse.Namespace, source: Any) -> tuple[list[tuple[Picture, Fr
                 if (frame := source.read(min(left, _WAIT_S))) is None:
                     continue
                 spent.append(source.last_ms)
-                felt.append((source.last, frame))
+                felt.append((source.last.name, frame))
                 if args.camera is not None and not args.json:
                     print(_words(frame), flush=True)
         except KeyboardInterrupt:
@@ -127,7 +127,7 @@ def _words(frame: Frame) -> str:
     return f"{frame.device_time:8.2f} s  {offset:+.2f} mm off the plate, {angle:.1f} deg, {100 * sure:.0f} % sure"
 
 
-def _facts(images: ImageSource, felt: list[tuple[Picture, Frame]], spent: list[float], *, simulated: bool) -> dict[str, Any]:
+def _facts(images: ImageSource, felt: list[tuple[str, Frame]], spent: list[float], *, simulated: bool) -> dict[str, Any]:
     sure = sum(float(frame.values[3]) > _SURE for _, frame in felt)
     notes = list(images.notes)
     for count, how in ((images.counts.lost, "lost"), (images.counts.bad, "unreadable or of another size")):
@@ -149,15 +149,15 @@ def _facts(images: ImageSource, felt: list[tuple[Picture, Frame]], spent: list[f
     }
 
 
-def _table(felt: list[tuple[Picture, Frame]], simulated: bool) -> str:
+def _table(felt: list[tuple[str, Frame]], simulated: bool) -> str:
     import csv
     import io
 
     text = io.StringIO()
     rows = csv.writer(text, lineterminator="\n")
     rows.writerow(["time_s", "host_time_s", "sequence", "image", "offset_mm", "depth_mm", "angle_deg", "confidence", "simulated"])
-    for picture, frame in felt:
+    for name, frame in felt:
         numbers = (f"{v:.5f}" if math.isfinite(v) else "" for v in frame.values.tolist())
-        row = [f"{picture.device_time:.6f}", f"{picture.host_time:.6f}", picture.sequence, picture.name, *numbers, int(simulated)]
+        row = [f"{frame.device_time:.6f}", f"{frame.host_time:.6f}", frame.sequence, name, *numbers, int(simulated)]
         rows.writerow(row)
     return text.getvalue()

@@ -5,13 +5,17 @@ import csv
 import io
 import json
 import shutil
+import weakref
 from collections.abc import Callable
 from pathlib import Path
 
 import cv2
+import numpy as np
 import pytest
 
 from skinfab.cli.main import main
+from skinfab.fingertip.optical.source import EdgeSource
+from skinfab.readout.frame import Frame
 
 TRAIN, RUN = ["errors.csv", "model.npz", "result.json", "train.png"], ["edges.csv", "optical.png", "result.json"]
 
@@ -135,6 +139,28 @@ def test_a_folder_and_a_video_are_read(made: Path, tmp_path: Path, capsys: pytes
     assert main(["optical", "run", "--camera", str(path), *model, "-o", str(tmp_path / "camera")]) == 0
     assert "mm off the plate" in capsys.readouterr().out
     assert {row["simulated"] for row in rows(tmp_path / "camera/edges.csv")} == {"1"}
+
+
+def test_run_keeps_no_picture(made: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    """A camera runs for hours: what is kept of a picture is its name, its times and what was felt."""
+    images: list[weakref.ref[np.ndarray]] = []
+    left: list[int] = []
+    read, close = EdgeSource.read, EdgeSource.close
+
+    def reading(self: EdgeSource, timeout: float | None = None) -> Frame | None:
+        frame = read(self, timeout)
+        if frame is not None and self.last is not None:
+            images.append(weakref.ref(self.last.image))
+        return frame
+
+    def closing(self: EdgeSource) -> None:
+        left.append(sum(image() is not None for image in images))
+        close(self)
+
+    monkeypatch.setattr(EdgeSource, "read", reading)
+    monkeypatch.setattr(EdgeSource, "close", closing)
+    assert main(["optical", "run", str(made / "sim/images"), "--model", str(made / "train/model.npz"), "-o", str(tmp_path), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["pictures"] == len(images) == 100 and left == [1]  # the source's own last one
 
 
 def test_wrong_use_says_what_is_right(made: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
