@@ -34,7 +34,9 @@ class HelpCommands:
         mouse = (
             "Object: drag turns, Ctrl+drag or the middle button moves, wheel zooms, click selects; arrows turn, 1 to 6 show the sides.\n"
             "Flat skin: drag a sensor to move it (Ctrl: without snapping), its handle to turn it; drag beside selects, the middle or right "
-            "button moves the sheet, wheel zooms; arrows nudge by 0.1 mm, with Shift by 1 mm, [ and ] turn.\n\n"
+            "button moves the sheet, wheel zooms; arrows nudge by 0.1 mm, with Shift by 1 mm, [ and ] turn.\n"
+            "By keys alone: F3 or F4 (or Enter in a view) begins a cursor; arrows move it, with Shift by a pixel, Enter clicks, "
+            "Shift+Enter is Shift+click, Ctrl+arrows turn the object or move the sheet, + and - enlarge, Esc ends.\n\n"
         )
         self._desk.dialogs.ask("Keys and mouse", mouse + "\n".join(f"{key}:  {what}" for key, what in self._keys()), ("Close",))
 

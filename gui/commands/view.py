@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from tkinter import ttk
 
 from gui.actions import Action
 from gui.desk import Desk
@@ -53,6 +54,8 @@ class ViewCommands:
         return [
             *(shading(k, name) for k, name in enumerate(SHADINGS)),
             Action("fit", "Show all", "View", self.fit, "Home", self._desk.has_skin),
+            Action("point3d", "Cursor on the object", "View", self._view3d.cursor.begin, "F3", self._desk.has_skin),
+            Action("point2d", "Cursor on the flat skin", "View", self._point_at_flat, "F4", self._desk.has_skin),
             Action("grid", "Grid", "View", self._toggle_grid, "Control-g", checked=lambda: self._view2d.grid_shown),
             Action("dark", "Dark", "View", self._toggle_dark, "Control-d", checked=lambda: self._theme() == "dark"),
         ]
@@ -61,6 +64,13 @@ class ViewCommands:
         """All of the object and all pieces."""
         self._view3d.fit()
         self._view2d.fit()
+
+    def _point_at_flat(self) -> None:
+        tabs = self._view2d.master
+        if isinstance(tabs, ttk.Notebook):  # another of its tabs may be in front
+            tabs.select(self._view2d)
+            self._view2d.update_idletasks()
+        self._view2d.cursor.begin()
 
     def _toggle_grid(self) -> None:
         self._view2d.show_grid(not self._view2d.grid_shown)

@@ -24,7 +24,7 @@ class _Way(Tool, ABC):
 
     def __init__(self, desk: Desk, show: ShowWay) -> None:
         self._desk, self._show = desk, show
-        self._last = -1
+        self._last = self._marked = -1
         self._ends: dict[int, int] = {}  # where the line ended after each step of the document since it was begun
         self._ways: Ways | None = None
         desk.session.listen("skin", self._follow)
@@ -59,15 +59,24 @@ class _Way(Tool, ABC):
                 self._show(None)
 
     def point(self, hit: AnyHit | None) -> None:
-        if self._last < 0 or hit is None or hit.vertex < 0:
+        if self._last < 0:
+            self._mark(-1 if hit is None else hit.vertex)
+            return
+        if hit is None or hit.vertex < 0:
             return
         skin = self._desk.skin
         self._show(skin.object.V[edit.preview_path(skin, self._last, hit.vertex, ways=self._ways_of(skin))])
 
     def stop(self) -> None:
-        self._last = -1
+        self._last = self._marked = -1
         self._ends.clear()
         self._show(None)
+
+    def _mark(self, vertex: int) -> None:
+        """Show where a line would begin."""
+        if vertex != self._marked:
+            self._marked = vertex
+            self._show(self._desk.skin.object.V[[vertex]] if vertex >= 0 else None)
 
     def _end_at(self, vertex: int) -> None:
         self._last = vertex

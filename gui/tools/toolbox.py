@@ -59,7 +59,7 @@ class Toolbox:
         pattern: Callable[[], Pattern],
         more: Sequence[Tool] = (),
     ) -> None:
-        self._desk, self._view3d, self._theme = desk, view3d, theme
+        self._desk, self._view3d, self._view2d, self._theme = desk, view3d, view2d, theme
         all_tools: list[Tool] = [
             Select(desk),
             Cut(desk, self._show_way),
@@ -78,6 +78,7 @@ class Toolbox:
         for view in (view3d, view2d):
             view.on_click, view.on_drag, view.on_release = self._click, self._drag, self._release
             view.on_point = self._point
+            view.cursor.say = desk.say
         desk.session.listen("tool", self._changed)
         desk.session.listen("skin", self._other_object)
 
@@ -106,11 +107,16 @@ class Toolbox:
         return self._held
 
     def stop(self) -> None:
-        """Drop what was begun; where nothing was, the tool; where none was held, the selection."""
+        """Drop what was begun; where nothing was, the cursor that keys move; then the tool; where none was held, the selection."""
         begun = self._held.begun
         self._held.stop()
         if begun:
             return
+        for cursor in (self._view3d.cursor, self._view2d.cursor):
+            if cursor.shown:
+                cursor.end()
+                self._desk.say(self._held.tip)
+                return
         if self._held.id != "select":
             self._desk.session.take_up("select")
         else:

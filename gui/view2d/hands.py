@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from gui.state.selection import NOTHING, Target
 from gui.view2d.drag import REACH_PX, Grabbed
-from gui.view2d.keys import bind_keys
+from gui.view2d.keys import PAN_PX, bind_keys
 from gui.view2d.live import Findings
 from gui.view2d.marking import HANDLE_RADIUS_PX
 from gui.view2d.replaced import with_sensors
@@ -112,6 +112,49 @@ class Hands:
         # Where nothing is held, Escape is for whoever is asked next.
         return "break" if self.let_go(back=True) else None
 
+    # What keys do in place of the mouse
+
+    looking = "move the sheet"
+
+    def is_empty(self) -> bool:
+        """Whether nothing is open."""
+        return self._session.skin is None
+
+    def point_at(self, x: int, y: int) -> None:
+        """As if the mouse had come there."""
+        self._view.surface.catch_up()  # what is there is asked of the picture, which must be that of now
+        self.pointer = self._view.pixel(x, y)
+        self._hover(x, y)
+
+    def click_at(self, x: int, y: int, *, shift: bool) -> None:
+        """As if the mouse had clicked there."""
+        view = self._view
+        view.surface.catch_up()
+        hit = view.hit(x, y)
+        if hit is None:
+            return
+        if self._session.tool != "select":
+            if view.on_click is not None:
+                view.on_click(hit, shift)
+            if view.on_release is not None:
+                view.on_release(hit)
+        elif hit.target.sensor and shift:
+            self._toggle(hit.target)
+        else:
+            self._session.select(hit.target)
+
+    def leave(self) -> None:
+        """As if the mouse had left."""
+        self._left(None)
+
+    def look_by(self, right: int, down: int) -> None:
+        """Move the sheet by one step."""
+        self._view.look(self._view.plane.moved(-right * PAN_PX, down * PAN_PX))
+
+    def zoom_at(self, factor: float, x: int, y: int) -> None:
+        """Enlarge what is there."""
+        self._view.zoom(factor, self._view.pixel(x, y))
+
     # The pointer
 
     def _press(self, event: tk.Event) -> None:
@@ -199,7 +242,9 @@ class Hands:
             self._view.on_point(hit)
         self._view.surface.refresh()
 
-    def _left(self, _: tk.Event) -> None:
+    def _left(self, event: tk.Event | None) -> None:
+        if event is not None and self._view.cursor.shown:
+            return
         self._hit_words = ""
         if self._pressed is None:
             self._session.hover(NOTHING)

@@ -20,7 +20,7 @@ NUDGE_MM, NUDGE_SHIFT_MM = 0.1, 1.0
 TURN_DEG, TURN_SHIFT_DEG = 15.0, 1.0
 #: Keys in a row within so many seconds are undone as one.
 _ONE_STEP_S = 1.0
-_PAN_PX = 40
+PAN_PX = 40
 _ZOOM = 1.25
 
 
@@ -68,7 +68,7 @@ class Keys:
         if self._chosen():
             self._change("nudge", lambda sensors, id: shift(sensors, id, dx=dx * step, dy=dy * step))
         else:
-            self._view.look(self._view.plane.moved(-dx * _PAN_PX, -dy * _PAN_PX))
+            self._view.look(self._view.plane.moved(-dx * PAN_PX, -dy * PAN_PX))
 
     def _turn(self, degrees: float) -> None:
         self._change("turn", lambda sensors, id: rotate(sensors, id, angle=np.radians(degrees)))

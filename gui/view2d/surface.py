@@ -85,6 +85,12 @@ class Surface(FigureCanvasTkAgg):
             # Not idle work: what both views have to draw of a large document would be one wait of twice the length.
             self._drawing = self.widget.after(0, self._draw_now)
 
+    def catch_up(self) -> None:
+        """Draw now what waits to be drawn."""
+        if self._drawing is not None:
+            self.widget.after_cancel(self._drawing)
+            self._draw_now()
+
     def refresh(self) -> None:
         """Draw the moving part anew, soon; many calls are one."""
         if self._waiting is None:

@@ -10,6 +10,7 @@ from tkinter import ttk
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from gui.cursor import KeyCursor
 from gui.shades import face_colours
 from gui.state.derived import Derived, Part
 from gui.state.session import Session
@@ -80,6 +81,7 @@ class View2D(ttk.Frame):
         self.surface = Surface(self, still=self._draw_still, moving=self._draw_moving)
         self.surface.widget.pack(fill="both", expand=True)
         self.hands = Hands(self)
+        self.cursor = KeyCursor(self.hands, self.surface.widget, colours=lambda: (self.theme.accent, self.theme.view))
         for topic, callback in (("skin", self._on_skin), ("file", self.fit), ("shading", self.redraw), ("tool", self._on_tool)):
             session.listen(topic, callback)  # type: ignore[arg-type]
         session.listen("selection", self._on_selection)

@@ -62,6 +62,41 @@ class Gestures:
             canvas.bind(f"<Control-Key-{number}>", lambda event: None)  # the window's: Tk would take it for the key alone
         canvas.bind("<Destroy>", lambda event: self._forget(), add=True)
 
+    # What keys do in place of the mouse
+
+    looking = "turn the object"
+
+    def is_empty(self) -> bool:
+        """Whether nothing is open."""
+        return self._view.session.skin is None
+
+    def point_at(self, x: int, y: int) -> None:
+        """As if the mouse had come there."""
+        self._view.canvas.update_idletasks()  # what is there is asked of the picture, which must be that of now
+        self._view.hover_at(x, y)
+
+    def click_at(self, x: int, y: int, *, shift: bool) -> None:
+        """As if the mouse had clicked there."""
+        self._view.canvas.update_idletasks()
+        if self._view.on_click is not None:
+            self._view.on_click(self._view.hit_at(x, y), shift)
+
+    def leave(self) -> None:
+        """As if the mouse had left."""
+        self._view.session.hover(NOTHING)
+        if self._view.on_point is not None:
+            self._view.on_point(None)
+
+    def look_by(self, right: int, down: int) -> None:
+        """Turn by one step."""
+        self._turn(right, down)
+
+    def zoom_at(self, factor: float, x: int, y: int) -> None:
+        """Enlarge what is there."""
+        self._move_to(self._view.camera.zoomed(factor, (x, y)))
+
+    # Mouse and keys
+
     def _press(self, event: tk.Event[tk.Misc]) -> None:
         self._view.canvas.focus_set()
         self._start = self._last = self._now = (event.x, event.y)
@@ -125,9 +160,9 @@ class Gestures:
             self._view.hover_at(*self._now)
 
     def _leave(self, event: tk.Event[tk.Misc]) -> None:
-        if self._start is None:
+        if self._start is None and not self._view.cursor.shown:
             self._forget()
-            self._view.session.hover(NOTHING)
+            self.leave()
 
     def _wheel(self, event: tk.Event[tk.Misc], delta: int) -> str:
         factor = _WHEEL if delta > 0 else 1 / _WHEEL

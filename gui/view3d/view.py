@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from gui.cursor import KeyCursor
 from gui.state.derived import Derived
 from gui.state.selection import NOTHING, Target
 from gui.state.session import Session
@@ -52,7 +53,7 @@ class View3D(ttk.Frame):
 
     The left button turns the object, unless the tool takes the drag; the right one always turns it. The middle button, or the left with
     Ctrl, moves it, the wheel enlarges what is under the pointer. Arrow keys turn (with Shift they move), + and - enlarge, f shows
-    all, 1 to 6 show the six sides.
+    all, 1 to 6 show the six sides. Enter begins a cursor that arrow keys move (`KeyCursor`).
 
     Parameters
     ----------
@@ -108,7 +109,8 @@ class View3D(ttk.Frame):
         self._labelled: tuple[object, ...] = ()
         self._slow = self._gone = False
         self._whole = True  # all of the object is shown, and stays so when the window changes its size
-        Gestures(self)
+        self._gestures = Gestures(self)
+        self.cursor = KeyCursor(self._gestures, self.canvas, colours=lambda: (self.theme.accent, self.theme.view))
         self.canvas.bind("<Configure>", self._configured, add=True)
         self.bind("<Destroy>", self._destroyed, add=True)
         self._skin: Skin | None = None
