@@ -111,8 +111,10 @@ class KeyCursor:
 
     def end(self) -> None:
         """Disappear; arrows do again what they did."""
-        self._hide()
-        self._on = False
+        if self._on:
+            self._on = False
+            self._hide()
+            self._view.leave()
 
     def _enter(self, *, shift: bool = False) -> str:
         if not self._on:
@@ -173,9 +175,8 @@ class KeyCursor:
                 self._canvas.create_line(ends, fill=fill, width=wide * self._dpi, tags=("keycursor",))
 
     def _hide(self) -> None:
-        if self._on:
-            self._canvas.delete("keycursor")
-            self._view.leave()
+        # What is lit stays so: it may be the other view's cursor that has the keys now, and has said what it is on.
+        self._canvas.delete("keycursor")
 
     def _forget(self) -> None:
         if self._idle:

@@ -183,6 +183,19 @@ class Window:
         self.screen.xdo("key", *keys)
         self.tcl("update idletasks")
 
+    def steer(self, widget: str, to: Sequence[float]) -> None:
+        """Bring the cursor that keys move, which is shown, to a place of a view by arrows alone."""
+        box = list(map(int, self.tcl(f"{widget} bbox keycursor").split()))
+        keys = []
+        for axis, (less, more) in enumerate((("Left", "Right"), ("Up", "Down"))):
+            way = round(to[axis] - (box[axis] + box[axis + 2]) / 2)
+            steps, pixels = divmod(abs(way), 10)
+            key = more if way > 0 else less
+            keys += [key] * steps + [f"shift+{key}"] * pixels
+        self.key("--delay", "2", *keys)
+        box = list(map(int, self.tcl(f"{widget} bbox keycursor").split()))
+        assert np.hypot((box[0] + box[2]) / 2 - to[0], (box[1] + box[3]) / 2 - to[1]) < 3
+
     def type(self, text: str) -> None:
         """Write."""
         self.screen.xdo("type", "--delay", 1, text)

@@ -184,6 +184,7 @@ def test_on_the_object_too(flat, keyboard):
     x, y = flat.view3d.cursor.at
     keyboard.press("F4")
     assert flat.view2d.cursor.shown and not flat.view3d.cursor.shown and not cross(flat.view3d.canvas)
+    assert flat.session.hovered.piece and "move the sheet" in flat.app.status.text.get()
     keyboard.press("F3")
     assert flat.view3d.cursor.shown and flat.view3d.cursor.at == (x, y) and not cross(flat.view2d.surface.widget)
 

@@ -78,8 +78,9 @@ def test_from_a_mesh_to_gcode(start: Callable[..., Window], screen: Screen, tmp_
     flat = window.wait_kept(lambda s: len(s.pieces) == 1 and len(s.pieces[0].UV) > len(opened.object.V), "the seam is open")
     assert window.title.startswith("*")
     on_seam = window.look(opened, "front").to_screen(cut.object.V[cut.seams[len(cut.seams) // 2]].mean(axis=0))[0, :2]
-    window.key("l")
-    window.click(OBJECT, on_seam)
+    window.key("l", "F3")  # by keys alone
+    window.steer(OBJECT, on_seam)
+    window.key("Return", "Escape")
     window.wait_kept(lambda s: s.marks is not None and len(s.marks.locked) == len(cut.seams), "the seam is locked")
     window.key("F5")
     window.settled()
@@ -102,11 +103,18 @@ def test_from_a_mesh_to_gcode(start: Callable[..., Window], screen: Screen, tmp_
     window.click(size)
     window.key("Home", "shift+End")
     window.type("16")  # smaller than the one that went, so that a pixel more or less is no matter
-    window.key("Return")
+    window.key("Return", "F4")
+    window.steer(FLAT, window.sensor(placed, "C1"))
+    window.key("Return", "Escape")
+    by_keys = window.wait_kept(lambda s: len(s.sensors) == len(placed.sensors), "one sensor is new, by keys alone")
+    window.key("ctrl+z")
+    window.wait_kept(lambda s: len(s.sensors) == len(without.sensors), "it is gone again")
     window.click(FLAT, window.sensor(placed, "C1"))
     added = window.wait_kept(lambda s: len(s.sensors) == len(placed.sensors), "one sensor is new")
     (new,) = {s.id for s in added.sensors} - {s.id for s in without.sensors}
     assert next(s.pattern.s for s in added.sensors if s.id == new) == 16
+    places = [np.array([s.x, s.y]) for skin in (by_keys, added) for s in skin.sensors if s.id == new]
+    assert np.hypot(*(places[1] - places[0])) < 1.0, "where the keys put it, the click did"
     window.key("space")
 
     # To where it does not fit, which words and colour say, and back.
