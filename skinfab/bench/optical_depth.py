@@ -8,6 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from skinfab.fingertip.optical.follower import LEAST_CONFIDENCE
+from skinfab.fingertip.optical.follower import REACH_MM as FOLLOWED_TO_MM
 from skinfab.fingertip.optical.labelled import DEPTHS_MM, FOLLOWED_MM, labelled
 from skinfab.fingertip.optical.plates import HalfPlane
 from skinfab.fingertip.optical.regress import EdgeModel, train
@@ -38,6 +40,8 @@ class DepthRow:
         Part of the frames whose offset or angle is wrong.
     sure, sure_wrong : float
         Part of the frames that are called sure; part of all frames that are, and wrong.
+    followed_wrong : float
+        Part of all frames that a follower believes, and that are wrong.
     frames : int
     simulated : bool
     """
@@ -50,6 +54,7 @@ class DepthRow:
     wrong: float
     sure: float
     sure_wrong: float
+    followed_wrong: float
     frames: int
     simulated: bool = True
 
@@ -78,8 +83,10 @@ def depth_row(model: EdgeModel, tip: Fingertip, learned: tuple[float, float], de
     for _ in range(frames):
         offset, angle = float(rng.uniform(-REACH_MM, REACH_MM)), float(rng.uniform(-math.pi, math.pi))
         felt = model.edge(tip.frame(HalfPlane(offset, angle), rng=rng, depth_mm=depth))
-        said.append((abs(felt.offset_mm - offset), abs(math.degrees(math.remainder(felt.angle_rad - angle, math.tau))), felt.confidence))
-    off, turned, confidence = np.array(said).T
+        turn = abs(math.degrees(math.remainder(felt.angle_rad - angle, math.tau)))
+        said.append((abs(felt.offset_mm - offset), turn, felt.confidence, abs(felt.offset_mm)))
+    off, turned, confidence, beside = np.array(said).T
     wrong, sure = (off > WRONG_MM) | (turned > WRONG_DEG), confidence > SURE
-    a, b, c, d, e = (float(each.mean()) for each in (off, turned, wrong, sure, sure & wrong))
-    return DepthRow(*learned, depth, a, b, c, d, e, frames)
+    followed = (confidence >= LEAST_CONFIDENCE) & (beside <= FOLLOWED_TO_MM)
+    a, b, c, d, e, f = (float(each.mean()) for each in (off, turned, wrong, sure, sure & wrong, followed & wrong))
+    return DepthRow(*learned, depth, a, b, c, d, e, f, frames)

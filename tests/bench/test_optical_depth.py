@@ -23,7 +23,15 @@ class Guess:
 def test_what_is_called_sure_and_wrong_is_counted() -> None:
     sure, unsure = (depth_row(Guess(c), Fingertip(), (1.0, 2.0), 1.5, 100) for c in (0.9, 0.4))  # type: ignore[arg-type]
     assert sure.sure == 1 and sure.sure_wrong == sure.wrong > 0.6 and 70 < sure.angle_deg < 110
-    assert unsure == replace(sure, sure=0.0, sure_wrong=0.0)
+    assert unsure == replace(sure, sure=0.0, sure_wrong=0.0, followed_wrong=0.0)
+    assert sure.followed_wrong == sure.wrong  # what a follower takes as well
+
+
+def test_a_follower_does_not_take_what_is_far_off() -> None:
+    far = Guess(0.9)
+    far.said = replace(far.said, offset_mm=7.0)
+    row = depth_row(far, Fingertip(), (1.0, 2.0), 1.5, 20)  # type: ignore[arg-type]
+    assert row.sure_wrong == row.wrong > 0.9 and row.followed_wrong == 0
 
 
 def test_a_row_for_every_range_and_depth() -> None:
