@@ -28,6 +28,7 @@ def add_options(p: argparse.ArgumentParser) -> None:
     p.add_argument("images", metavar="IMAGES", type=Path, nargs="?", help="a folder of pictures, or a video")
     p.add_argument("--camera", metavar="N", help="its number from 0 (or an address), until Ctrl-C, instead")
     p.add_argument("--model", metavar="MODEL.npz", type=Path, required=True, help="from skinfab optical train, of this fingertip")
+    p.add_argument("--rest", metavar="IMAGE", type=Path, help="of the untouched fingertip now: its camera has moved since the training")
     p.add_argument("--rate", metavar="HZ", type=steps.positive, help="pictures a second of a folder (default: 30)")
     p.add_argument("--seconds", metavar="S", type=steps.positive, help="of a camera: end after so long (default: at Ctrl-C)")
     p.add_argument("-o", "--output", metavar="DIR", type=Path, required=True, help="folder for the table of edges, result and figure")
@@ -37,11 +38,14 @@ def add_options(p: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Look, write, and say what was felt."""
+    from dataclasses import replace
+
     from skinfab.errors import InputError
     from skinfab.files import atomic_write, require_apart
     from skinfab.fingertip.optical.edge import Edge
     from skinfab.fingertip.optical.figure import draw_run
     from skinfab.fingertip.optical.model_file import load_edge
+    from skinfab.fingertip.optical.picture import read_picture
     from skinfab.fingertip.optical.source import EdgeSource
     from skinfab.staging import staged_folder
 
@@ -49,10 +53,12 @@ def run(args: argparse.Namespace) -> int:
         args.wrong_usage("give IMAGES or --camera N, one of them")
     if args.seconds is not None and args.camera is None:
         args.wrong_usage("--seconds is for a camera")
-    require_apart(args.output, FILES, [path for path in (args.images, args.model) if path is not None])
+    require_apart(args.output, FILES, [path for path in (args.images, args.model, args.rest) if path is not None])
     if args.images is not None and args.images.is_dir() and args.output.resolve() == args.images.resolve():
         raise InputError(f"{args.output} holds the pictures, and the figure would be taken for one of them; give another folder by -o")
     model, made_from = load_edge(args.model)
+    if args.rest is not None:
+        model = replace(model, pins=model.pins.seated(read_picture(args.rest)[0]))
     source = EdgeSource(_images(args), model)
     felt, spent = _felt(args, source)
     if not felt:

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 from skinfab.cli.main import main
+from skinfab.fingertip.optical.simulator import Fingertip
 from skinfab.fingertip.optical.source import EdgeSource
 from skinfab.readout.frame import Frame
 
@@ -161,6 +162,24 @@ def test_run_keeps_no_picture(made: Path, tmp_path: Path, monkeypatch: pytest.Mo
     monkeypatch.setattr(EdgeSource, "close", closing)
     assert main(["optical", "run", str(made / "sim/images"), "--model", str(made / "train/model.npz"), "-o", str(tmp_path), "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["pictures"] == len(images) == 100 and left == [1]  # the source's own last one
+
+
+def test_rest_is_for_a_camera_that_has_moved(made: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "images").mkdir()
+    tip = Fingertip()
+    cv2.imwrite(str(tmp_path / "rest.png"), np.roll(tip.image(tip.rest), 3, axis=1))
+    for k in range(1, 11):
+        image = cv2.imread(str(made / f"sim/images/{k:05d}.png"), cv2.IMREAD_GRAYSCALE)
+        cv2.imwrite(str(tmp_path / f"images/{k}.png"), np.roll(image, 3, axis=1))
+    words = ["optical", "run", str(tmp_path / "images"), "--model", str(made / "train/model.npz"), "-o", str(tmp_path / "out"), "--json"]
+    sure = []
+    for rest in ([], ["--rest", str(tmp_path / "rest.png")]):
+        assert main([*words, *rest]) == 0
+        sure.append(json.loads(capsys.readouterr().out)["sure"])
+    assert sure[0] == 0 and sure[1] >= 5
+    cv2.imwrite(str(tmp_path / "rest.png"), np.zeros((240, 240), np.uint8))
+    assert main([*words, "--rest", str(tmp_path / "rest.png")]) == 1
+    assert "127 of 127 pins are not found in the image at rest" in capsys.readouterr().err
 
 
 def test_wrong_use_says_what_is_right(made: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

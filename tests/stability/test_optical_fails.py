@@ -98,6 +98,22 @@ def test_light_touches_are_learned_and_where_they_tell_nothing_they_are_not_sure
     assert light.edge(TIP.image(TIP.rest)).confidence < 0.2
 
 
+def test_a_camera_that_has_moved_is_not_believed_and_an_image_at_rest_mends_it(model: EdgeModel) -> None:
+    def moved(image: Image) -> Image:
+        return np.roll(image, (0, 3), axis=(0, 1))  # nothing but dark comes in at the side
+
+    rng, rows = np.random.default_rng(0), []
+    anew = replace(model, pins=model.pins.seated(moved(TIP.image(TIP.rest))))
+    for _ in range(20):
+        angle = rng.uniform(-3, 3)
+        image = moved(TIP.frame(HalfPlane(rng.uniform(-4, 4), angle), rng=rng))
+        felt = (model.edge(image), anew.edge(image))
+        rows.append([(abs(math.degrees(math.remainder(e.angle_rad - angle, math.tau))), e.confidence) for e in felt])
+    (blind, mended), (doubt, sure) = np.array(rows).transpose(2, 1, 0)
+    assert blind.mean() > 15 and doubt.max() < 0.2
+    assert mended.mean() < 10 and np.median(sure) > 0.6
+
+
 def test_noise_that_was_not_learned_is_not_followed_and_where_it_was_the_contour_closes(model: EdgeModel) -> None:
     tip = noisy(TIP, 0.2)
     assert len(followed(model.edge, tip=tip).path) == 0  # nothing is believed
