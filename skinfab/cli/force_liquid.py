@@ -24,6 +24,8 @@ _RUN = ("liquid.csv", "liquid.png", "result.json")
 _HEAD = ("log", "answer", "chance", "wander_mm", "period_s", "pivot_x_mm", "pivot_y_mm", "pivot_z_mm", "simulated")
 #: A weight is at most so far from the hand's origin, mm, and at least so heavy, N.
 _REACH_MM, _LEAST_N = 500.0, 0.3
+#: A hand of which more than this part of the pieces swing beyond noise finds little.
+_MOSTLY = 0.5
 #: Water that swings in the simulated cups, g.
 _WATER_G = (0, 20, 100)
 
@@ -116,6 +118,16 @@ def train(args: argparse.Namespace) -> int:
     simulated, model = any(log.simulated for log in logs), trained.model
     if trained.moving:
         notes.append(f"{trained.moving} of {model.pieces} pieces move without swinging, so the hand was not still there")
+    if trained.strange:
+        notes.append(
+            f"{', '.join(trained.strange)} swing{'s' * (len(trained.strange) == 1)} as a liquid does, and was learned from since its label "
+            "says that it holds none; less than that is not found any more"
+        )
+    if trained.plain > _MOSTLY:
+        notes.append(
+            f"{100 * trained.plain:.0f} % of the pieces would be taken for a liquid without learning: support the hand, or look whether "
+            "they hold one"
+        )
     result = {
         "simulated": simulated,
         "false_alarm": model.false_alarm,
@@ -125,6 +137,8 @@ def train(args: argparse.Namespace) -> int:
         "logs": trained.logs,
         "held_out_false_alarm": asdict(trained.held_out),
         "untaught_false_alarm": trained.plain,
+        "limit_of": {"log": trained.limit_log, "wander_mm": trained.limit_mm, "middle_mm": trained.middle_mm},
+        "strange": list(trained.strange),
         "made_from": made_from,
         "notes": notes,
     }
@@ -139,6 +153,10 @@ def train(args: argparse.Namespace) -> int:
     print(
         f"{model.pieces} pieces of {trained.logs} recordings{made}: a chance below {model.limit:.2g} is a liquid; of recordings held out "
         f"{trained.held_out} were taken for one (wanted: {model.false_alarm:g}; without learning: {trained.plain:.3f})"
+    )
+    print(
+        f"the limit is as strong a swing as in {trained.limit_log}, whose line wanders by {trained.limit_mm:.2g} mm (the middle one: "
+        f"{trained.middle_mm:.2g}); of liquids that swing less, few are found"
     )
     print(f"{args.output}: {', '.join(_TRAINED)}")
     return 0

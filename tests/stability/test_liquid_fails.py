@@ -1,9 +1,13 @@
 """Where a liquid is made up or missed: each test shows that the naive way fails, and what is done instead."""
 
-import numpy as np
+from dataclasses import replace
 
+import numpy as np
+import pytest
+
+from skinfab.errors import RefusedError
 from skinfab.fingertip.force.liquid import stirred
-from skinfab.fingertip.force.liquid_model import train_liquid
+from skinfab.fingertip.force.liquid_model import limit_of, stand_out, train_liquid
 from skinfab.fingertip.force.liquid_simulator import CupScene, stir
 from skinfab.fingertip.force.logs import WrenchLog
 from skinfab.fingertip.force.simulator import MATERIALS, slide
@@ -33,3 +37,23 @@ def test_a_sensor_that_drifts_wanders_and_does_not_swing() -> None:
     still = [stirred(stir(water_kg=0.0, seed=k)) for k in range(10)]
     assert min(each.wander_mm for each in found) > 2 * max(each.wander_mm for each in still)
     assert sum(each.liquid for each in found) <= 1
+
+
+def test_one_full_cup_among_the_empty_ones_would_blind_the_limit_and_is_refused_by_name() -> None:
+    empty = [replace(stir(water_kg=0.0, seconds=3, seed=[k, 4]), name=f"e{k}.csv", label="") for k in range(20)]
+    full = replace(stir(water_kg=0.1, seconds=3, seed=4), name="f.csv", label="full")
+    chance = np.array([stirred(log).chance for log in [*empty, full]])
+    asked = np.array([stirred(stir(water_kg=0.1, seconds=3, seed=[k, 5])).chance for k in range(10)])
+    assert np.mean(asked < limit_of(chance, 0.05)) < 0.8 and np.mean(asked < limit_of(chance[:-1], 0.05)) == 1  # as it would be
+    assert stand_out(chance).nonzero()[0].tolist() == [20]
+    with pytest.raises(RefusedError, match=r"^f\.csv swings as the others cannot.*# label: empty"):
+        train_liquid([*empty, full], false_alarm=0.05, seconds=3.0)
+    said = train_liquid([*empty, replace(full, label="solid")], false_alarm=0.05, seconds=3.0)
+    assert said.strange == ("f.csv",) and said.limit_log == "f.csv" and said.limit_mm > 5 * said.middle_mm
+    assert not train_liquid(empty[:20], false_alarm=0.05, seconds=3.0).strange
+
+
+def test_full_cups_alone_are_no_empty_ones() -> None:
+    full = [replace(stir(water_kg=0.1, seed=[k, 6]), name=f"f{k}.csv", label="") for k in range(10)]
+    with pytest.raises(RefusedError, match=r"f0\.csv, f1\.csv, f2\.csv and \d more swing as the others cannot"):
+        train_liquid(full, false_alarm=0.1)

@@ -30,6 +30,14 @@ FloatArray = NDArray[np.float64]
 KIND = "force liquid"
 #: What a log that holds a liquid may be labelled; to be learned from are those that hold none.
 LIQUID = "liquid"
+#: Labels by which somebody says of a log that it holds none, so that it is learned from however it swings.
+DRY = ("empty", "solid")
+#: A piece whose chance is smaller than those of all others explain, by this chance of one among them, is taken for a liquid's.
+_STRANGE = 0.003
+#: Logarithms (base 10) of hands that tremble by 0.2 m/s2 have a middle of 2.6 and fall off as an exponential of 1.5; more is no hand.
+_MOST_MIDDLE, _MOST_SCALE = 3.0, 1.5
+#: ... and of noise alone at least so much: few pieces must not seem to agree better than they can.
+_LEAST_SCALE = 0.3
 #: Rates of one device differ by less: its clock is good to a few parts in a thousand.
 _RATE_FRACTION = 0.02
 #: Below such a chance numbers end, and nothing could be more unlikely.
@@ -95,6 +103,12 @@ class Trained:
     moving : int
         Pieces in which the hand was not still.
     logs : int
+    strange : tuple of str
+        Logs that say they hold no liquid, and swing as if they did.
+    limit_log : str
+        That the limit comes from.
+    limit_mm, middle_mm : float, mm
+        How far the line wanders there, and in the middle one of all pieces.
     """
 
     model: LiquidModel
@@ -102,6 +116,10 @@ class Trained:
     plain: float
     moving: int
     logs: int
+    strange: tuple[str, ...]
+    limit_log: str
+    limit_mm: float
+    middle_mm: float
 
 
 def pieces(log: WrenchLog, seconds: float) -> list[WrenchLog]:
@@ -133,6 +151,24 @@ def limit_of(chances: FloatArray, false_alarm: float) -> float:
     return float(np.sort(chances)[k - 1]) if k else 0.0
 
 
+def stand_out(chances: FloatArray) -> NDArray[np.bool_]:
+    """Which chances are decades below what the others explain.
+
+    The logarithms of rigid objects fall off as an exponential, at a rate that the hand's trembling sets: it is taken from what lies
+    between the middle one and the upper quartile, so that up to a quarter of full cups do not change it.
+
+    Examples
+    --------
+    >>> stand_out(np.append(np.arange(1, 100) / 100, 1e-19)).nonzero()[0].tolist()
+    [99]
+    """
+    size = -np.log10(np.maximum(chances, _LEAST_CHANCE))
+    middle, upper = np.quantile(size, [0.5, 0.75])
+    scale = np.clip((upper - middle) / math.log(2), _LEAST_SCALE, _MOST_SCALE)
+    limit = min(middle, _MOST_MIDDLE) + scale * math.log(0.5 * len(size) / _STRANGE)
+    return np.asarray(size > limit)
+
+
 def train_liquid(logs: Sequence[WrenchLog], *, false_alarm: float = FALSE_ALARM, seconds: float = PIECE_S) -> Trained:
     """Learn the limit from recordings of objects without a liquid, held as a cup would be.
 
@@ -149,7 +185,7 @@ def train_liquid(logs: Sequence[WrenchLog], *, false_alarm: float = FALSE_ALARM,
     InputError
         A log says that it holds a liquid, rates differ, all are one grasp, or there are too few pieces for such a false alarm.
     RefusedError
-        They swing as strongly as anything could.
+        They swing as strongly as anything could, or one swings as no other does and does not say that it is empty or solid.
     """
     if wet := next((log.name for log in logs if log.label == LIQUID), None):
         raise InputError(f"{wet} says that it holds a liquid; learn from objects that hold none")
@@ -168,6 +204,14 @@ def train_liquid(logs: Sequence[WrenchLog], *, false_alarm: float = FALSE_ALARM,
     judged = [stirred(part) for _, part in parts]
     chance = np.array([each.chance for each in judged])
     limit = limit_of(chance, false_alarm)
+    strange = [logs[k] for k in np.unique(group[stand_out(chance)]).tolist()]
+    unsaid = [log.name for log in strange if log.label.lower() not in DRY]
+    if unsaid:
+        more = f" and {len(unsaid) - 3} more" if len(unsaid) > 3 else ""
+        raise RefusedError(
+            f"{', '.join(unsaid[:3])}{more} swing{'s' * (len(unsaid) == 1)} as the others cannot, and as a liquid does; leave out what "
+            "holds one, and where nothing does, say so in the log: # label: empty"
+        )
     if limit < _LEAST_CHANCE:
         raise RefusedError("these recordings swing so strongly that no liquid would stand out from them; hold still, on a steady table")
     wrong = np.zeros(len(parts), dtype=bool)
@@ -175,7 +219,19 @@ def train_liquid(logs: Sequence[WrenchLog], *, false_alarm: float = FALSE_ALARM,
         wrong[test] = chance[test] < limit_of(chance[train], false_alarm)
     model = LiquidModel(limit, false_alarm, seconds, float(rates.mean()), len(parts))
     rate = by_trial([int(wrong[test].sum()) for _, test in splits], [len(test) for _, test in splits])
-    return Trained(model, rate, float((chance < false_alarm).mean()), sum(each.moves for each in judged), len(splits))
+    wander = [each.wander_mm for each in judged]
+    at = int(np.flatnonzero(chance == limit)[0])
+    return Trained(
+        model,
+        rate,
+        float((chance < false_alarm).mean()),
+        sum(each.moves for each in judged),
+        len(splits),
+        tuple(log.name for log in strange),
+        parts[at][1].name,
+        wander[at],
+        float(np.median(wander)),
+    )
 
 
 def _upwards(value: float) -> float:
