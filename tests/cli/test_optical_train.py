@@ -70,6 +70,7 @@ def test_tables_that_cannot_be_used_are_refused(made: Path, tmp_path: Path, caps
     text = (made / "sim/targets.csv").read_text()
     shutil.copytree(made / "sim/images", tmp_path / "images")
     whole, lines = (tmp_path / "images/00007.png").read_bytes(), text.splitlines()
+    shutil.copy(tmp_path / "images/00001.png", tmp_path / "images/copy.png")
     for wrong, words in (
         (text, "00007.png is no picture"),
         (text.replace("images/00009", "images/x"), "images/x.png: No such file"),
@@ -77,6 +78,10 @@ def test_tables_that_cannot_be_used_are_refused(made: Path, tmp_path: Path, caps
         (text.replace("offset_mm", "off"), "has no column 'offset_mm'"),
         ("\n".join([lines[0], lines[1].replace(",0.", ",?", 1).replace(",1", ",x"), *lines[2:]]), "is not a number"),
         ("\n".join([*lines, lines[1].replace("images/", "./images/")]), "'./images/00001.png' twice (as 'images/00001.png' first)"),
+        (
+            "\n".join([*lines, lines[40].replace("00040.png", "copy.png")]),
+            "'images/00001.png' and 'images/copy.png' are alike in every pixel and of other groups",
+        ),
         (
             "\n".join([lines[0], *(line.replace(",", ";").replace(".", ",").replace(",png", ".png") for line in lines[1:])]).replace(
                 lines[0], lines[0].replace(",", ";")

@@ -79,7 +79,8 @@ def read_targets(table: str | Path, folder: str | Path | None = None, *, columns
     Raises
     ------
     InputError
-        The table, a column, a number or an image is missing or cannot be read; an image stands there twice.
+        The table, a column, a number or an image is missing or cannot be read; an image stands there twice, or under
+        two names in two groups.
     """
     table, columns = Path(table), columns or Columns()
     lines, comma = read_csv_lines(table, max_bytes=_MAX_BYTES, wanted="a table of images and targets as CSV")
@@ -110,6 +111,13 @@ def read_targets(table: str | Path, folder: str | Path | None = None, *, columns
     if not grouped:
         notes.append(f"{table.name} has no column {columns.group!r}: every image counts as a trial of its own")
     groups = tuple((row[columns.group] or name) if grouped else name for row, name in zip(rows, names, strict=True))
+    alike: dict[bytes, int] = {}
+    for k, (image, _) in enumerate(read):
+        if groups[j := alike.setdefault(image.tobytes(), k)] != groups[k]:
+            raise InputError(
+                f"{table}: images {names[j]!r} and {names[k]!r} are alike in every pixel and of other groups; one could be learned from "
+                "and the other judged on: leave one out, or give them one group"
+            )
     simulated = any(made for _, made in read) or rows[0].get("simulated") == "1"
     return Targets(tuple(names), tuple(image for image, _ in read), edges, groups, simulated, tuple(notes))
 
