@@ -14,6 +14,7 @@ NAMES = {
     "flatten": "time against distortion of the ways to flatten a disk",
     "simplify": "triangles solved for against distortion and time",
     "gcode": "arcs and chord tolerances against file size, deviation and time",
+    "segment": "pieces and seam of automatic seams against the bound and time, beside xatlas",
     "calibrate": "models and degrees of a strain calibration against held-out error and time",
     "control": "gain, delay and period against the error of a controlled joint",
     "force": "averaging and least force against a contact's error and what is rejected; events",
@@ -32,6 +33,7 @@ MODULES = {
     "flatten": ("skinfab.bench.flatten", True),
     "simplify": ("skinfab.bench.simplify", True),
     "gcode": ("gcode.bench", False),
+    "segment": ("skinfab.bench.segment", False),
     "calibrate": ("calibration.bench.calibrate", False),
     "control": ("calibration.bench.control", False),
     "force": ("skinfab.bench.force", False),
@@ -83,6 +85,9 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     p.add_argument(
         "--sizes", metavar="N,N,...", type=sizes, help="triangles of the disks (default: 5000,20000,80000; simplify: 20000,80000,320000)"
     )
+    p.add_argument(
+        "--meshes", metavar="FILE", type=Path, nargs="+", default=[], help="segment: find seams on these too (default: the project's own)"
+    )
     p.add_argument("--repeats", metavar="K", type=repeats, default=3, help="the least time of K counts (default: 3)")
     p.add_argument("--json", action="store_true", help="print one JSON object and nothing else")
     p.set_defaults(run=run, wrong_usage=p.error)
@@ -96,6 +101,12 @@ def run(args: argparse.Namespace) -> int:
     wanted = list(dict.fromkeys(args.names or NAMES))
     if args.sizes and not any(MODULES[key][1] for key in wanted):
         args.wrong_usage(f"--sizes counts triangles, and {', '.join(wanted)} has none")
+    if args.meshes and "segment" not in wanted:
+        args.wrong_usage(f"--meshes are for segment, and what is measured is {', '.join(wanted)}")
+    if "segment" in wanted:
+        from skinfab.bench.segment import mesh_files
+
+        mesh_files(args.meshes)  # none: that is told now, not after minutes
     found = {}
     with staged_folder(args.output) as folder:
         with terminal_progress(quiet=args.json) as progress:
@@ -103,6 +114,7 @@ def run(args: argparse.Namespace) -> int:
                 part = part_of(progress, k / len(wanted), (k + 1) / len(wanted))
                 module, sized = MODULES[key]
                 options = {"sizes": args.sizes} if sized and args.sizes else {}
+                options |= {"meshes": args.meshes} if key == "segment" and args.meshes else {}
                 found[key] = importlib.import_module(module).run(folder, repeats=args.repeats, progress=part, **options)
         written = [str(args.output / file.name) for file in sorted(folder.iterdir())]
     if args.json:

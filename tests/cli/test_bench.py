@@ -64,6 +64,7 @@ def test_all_are_measured_where_none_is_named(
         (["flaten"], "'flaten' is not measured; there are flatten, simplify, gcode"),
         (["--sizes", "300,x"], "'300,x' is not a list of numbers of triangles such as 5000,20000"),
         (["gcode", "--sizes", "300"], "--sizes counts triangles, and gcode has none"),
+        (["gcode", "--meshes", "a.obj"], "--meshes are for segment, and what is measured is gcode"),
         (["--repeats", "0"], "'0' is not a whole number from 1 up"),
     ],
 )
