@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from skinfab.bench.flatten import REPEATS, read_csv, write_csv
 from skinfab.bench.timing import one_processor
 from skinfab.fingertip.array.ablation import ablation
+from skinfab.fingertip.array.false_events import HOW, RATES, Stood, false_events
 from skinfab.fingertip.array.geometry import Geometry
 from skinfab.fingertip.array.simulator import Device
 from skinfab.fingertip.array.study import (
@@ -39,6 +40,8 @@ DEVICES, RODS, TWIRLS = 10, 6, 20
 TILTS = 12
 #: Arrays under another field, the seed's of 8 x 8.
 LAYERS = 4
+#: Touches in each row of those that stand, and of those that slip and roll.
+STOOD, MOVED = 10, 5
 #: Frames whose reading is timed.
 _TIMED = 60
 SPAN = "span"
@@ -100,7 +103,7 @@ class Tracked:
 
 
 def run(folder: Path, *, repeats: int = REPEATS, progress: Progress = silent) -> dict[str, Any]:
-    """Measure, and write array.csv, .png and .txt, array_seed.png, array_twirl.csv and array_ablation.csv into `folder`, which is there.
+    """Measure, and write array.csv, .png and .txt, array_seed.png, and array_twirl, _still and _ablation.csv into `folder`, which is there.
 
     Returns
     -------
@@ -116,6 +119,8 @@ def run(folder: Path, *, repeats: int = REPEATS, progress: Progress = silent) ->
         rows = measure(repeats=repeats, progress=progress)
     write_csv(rows, folder / "array.csv")
     write_csv(track(), folder / "array_twirl.csv")
+    progress(0.99, "fingers that stand, slip and roll")
+    write_csv(stood(), folder / "array_still.csv")
     write_csv(ablation(), folder / "array_ablation.csv")
     # From here on only what the tables hold is used, so that chart and sentence cannot say anything else.
     table, twirl = read_csv(folder / "array.csv"), read_csv(folder / "array_twirl.csv")
@@ -193,6 +198,11 @@ def track(logs: int = TWIRLS) -> list[Tracked]:
         for published in (True, False)
         for kind, each in twirls(range(1000, 1000 + logs), published=published).items()
     ]
+
+
+def stood(touches: tuple[int, int] = (STOOD, MOVED), rates: Sequence[float] = RATES) -> list[Stood]:
+    """A row for every force and rate of fingers that stand, and of those that move."""
+    return [*false_events(touches[0], rates=rates, how=HOW[:2]), *false_events(touches[1], rates=rates, how=HOW[2:])]
 
 
 def pick(table: Sequence[Mapping[str, Any]], experiment: str, density: str, method: str) -> Mapping[str, Any]:

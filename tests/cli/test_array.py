@@ -171,9 +171,10 @@ def test_bench_writes_all_of_it(tmp_path: Path, capsys: pytest.CaptureFixture[st
     monkeypatch.setattr(bench, "measure", partial(bench.measure, densities=("8x8",), devices=1, rods=1, layers=1))
     monkeypatch.setattr(bench, "track", partial(bench.track, logs=1))
     monkeypatch.setattr(bench, "ablation", partial(bench.ablation, devices=1, rods=1))
+    monkeypatch.setattr(bench, "stood", partial(bench.stood, (1, 1), rates=(15.0,)))
     assert main(["array", "bench", "--repeats", "1", "-o", str(tmp_path), "--json"]) == 0
     result = json.loads(capsys.readouterr().out)
-    names = ["array.csv", "array.png", "array.txt", "array_ablation.csv", "array_seed.png", "array_twirl.csv"]
+    names = ["array.csv", "array.png", "array.txt", "array_ablation.csv", "array_seed.png", "array_still.csv", "array_twirl.csv"]
     assert result["simulated"] and [Path(file).name for file in result["files"]] == names
     assert all((tmp_path / name).stat().st_size for name in names)
     table = {(each["experiment"], each["method"]): each for each in result["rows"]}

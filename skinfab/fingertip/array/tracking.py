@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skinfab.fingertip.array.geometry import Geometry
-from skinfab.fingertip.array.motion import SLIP_S, At, Motion, Moved
+from skinfab.fingertip.array.motion import SLIP_S, At, Motion, Moved, Smooth
 
 FloatArray = NDArray[np.float64]
 
@@ -38,12 +38,16 @@ class Place:
         NaN where it is not known.
     force_n : float
         0 where it is not touched.
+    along_sd, around_sd : float, mm
+        Standard deviations of the place on the skin's outside.
     """
 
     time: float
     axial_mm: float
     angle_rad: float
     force_n: float
+    along_sd: float = 0.0
+    around_sd: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -93,10 +97,12 @@ def centre_of_pressure(Z: FloatArray, geometry: Geometry) -> tuple[float, float]
 class _Followed:
     """One contact: its number, and where it is."""
 
-    def __init__(self, number: int, place: Place, radius_mm: float) -> None:
+    def __init__(self, number: int, place: Place, radius_mm: float, every_s: float) -> None:
         self.number, self.last, self._radius = number, place, radius_mm
-        self._at = At(place.time, place.axial_mm, radius_mm * place.angle_rad)
-        self._motion = Motion(self._at)
+        self._at = At(place.time, place.axial_mm, radius_mm * place.angle_rad, place.along_sd, place.around_sd)
+        self._smooth = Smooth()
+        self._motion: Motion | None = None
+        self._move(every_s)
 
     def _turn(self, place: Place) -> float:
         return self._radius * math.remainder(place.angle_rad - self.last.angle_rad, math.tau)
@@ -105,19 +111,28 @@ class _Followed:
         """How far from it a place is, mm."""
         return math.hypot(place.axial_mm - self.last.axial_mm, self._turn(place))
 
-    def step(self, place: Place, *, anew: bool) -> list[Event]:
-        """Take the next place; `anew`: how it came there was not seen."""
-        self._at = At(place.time, place.axial_mm, self._at.around + self._turn(place))
+    def step(self, place: Place, every_s: float, *, anew: bool) -> list[Event]:
+        """Take the next place, so long after the frame before; `anew`: how it came there was not seen."""
+        self._at = At(place.time, place.axial_mm, self._at.around + self._turn(place), place.along_sd, place.around_sd)
         self.last = place
+        events = []
         if anew:
             events = self.end()
-            self._motion = Motion(self._at)
-            return events
-        return self._events(self._motion.step(self._at))
+            self._smooth, self._motion = Smooth(), None
+        return [*events, *self._move(every_s)]
+
+    def _move(self, every_s: float) -> list[Event]:
+        at = self._smooth.step(self._at, every_s)
+        if at is None:
+            return []
+        if self._motion is None:
+            self._motion = Motion(at)
+            return []
+        return self._events(self._motion.step(at))
 
     def end(self) -> list[Event]:
         """What goes on still, ended."""
-        return self._events(self._motion.end())
+        return self._events(self._motion.end()) if self._motion is not None else []
 
     def _events(self, moved: Sequence[Moved]) -> list[Event]:
         return [Event(each.kind, each.start, each.end, each.along_mm, each.around_mm, self.number) for each in moved]
@@ -152,6 +167,8 @@ class Tracker:
         #: The last frame that was sure, whether any was passed over since, and since when how many there are that are not followed yet.
         self._known, self._passed = -math.inf, False
         self._other: tuple[float, int] | None = None
+        #: Of the last frame, and how long it took to come.
+        self._time, self._every = math.nan, math.inf
 
     @property
     def touched(self) -> bool:
@@ -175,6 +192,9 @@ class Tracker:
 
     def step(self, time: float, places: Sequence[Place], *, sure: bool = True) -> list[Event]:
         """Take the next frame's contacts; events that are over with it. A frame that is not `sure` makes none."""
+        if time > self._time:
+            self._every = time - self._time
+        self._time = time
         if not sure:
             self._passed = True
             return []
@@ -202,13 +222,13 @@ class Tracker:
             each, place = min(((one, two) for one in left for two in free), key=lambda pair: pair[0].far(pair[1]))
             left.remove(each)
             free.remove(place)
-            events += each.step(place, anew=anew)
+            events += each.step(place, self._every, anew=anew)
             followed.append(each)
         for each in left:
             events += [*each.end(), Event("lift", since, since, number=each.number)]
         for place in free:
             self._number += 1
-            followed.append(_Followed(self._number, place, self._radius))
+            followed.append(_Followed(self._number, place, self._radius, self._every))
             events.append(Event("touch", since, since, number=self._number))
         self._each = followed
         return events

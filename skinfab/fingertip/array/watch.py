@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skinfab.errors import InputError
+from skinfab.fingertip.array.certainty import of_line, of_points, of_spot
 from skinfab.fingertip.array.geometry import Geometry, tactel_columns
 from skinfab.fingertip.array.line_fit import Line, LineFinder
 from skinfab.fingertip.array.logs import PULLED_PART, REST_S, of_recording, require_rested, tactels
@@ -25,6 +26,8 @@ FloatArray = NDArray[np.float64]
 
 #: A frame is touched where a tactel reads more than so many standard deviations: one false one in half a million readings.
 SIGMAS = 5.0
+#: And is touched still where a force tells so many of it: its place is fitted with it, and noise alone has 64 places to try.
+FAINT_SIGMAS = 6.0
 #: States whose places are not to be trusted, and make no events.
 UNSURE = ("past", "wide", "pulled")
 
@@ -107,8 +110,9 @@ class Analyser:
     def frame(self, time: float, Z: FloatArray, *, saturated: int = 0) -> Reading:
         """Take the next frame's deflections, (rings, stripes)."""
         found = _Found("pulled") if self._pulled(Z) else self._found(Z)
-        places = [Place(time, each.axial_mm, each.angle_rad, each.force_n) for each in found.contacts]
         sure = found.state not in UNSURE
+        sd = self._sd(Z, found) if sure else [(0.0, 0.0)] * len(found.contacts)
+        places = [Place(time, each.axial_mm, each.angle_rad, each.force_n, *one) for each, one in zip(found.contacts, sd, strict=True)]
         place = Place(time, math.nan, math.nan, 0.0)
         if places:
             place = replace(places[0], force_n=sum(each.force_n for each in places))
@@ -121,6 +125,15 @@ class Analyser:
         """What went on to the end."""
         return self._tracker.finish()
 
+    def _sd(self, Z: FloatArray, found: _Found) -> list[tuple[float, float]]:
+        """How surely the place of each contact is told."""
+        geometry = self._matcher.model.geometry
+        if found.line is not None:
+            return [of_line(Z, found.line, self._lines.predicted, geometry, noise=self._noise)]
+        if found.spot is not None and found.contacts == (_contact(found.spot),):
+            return [of_spot(Z, found.spot, self._spots.predicted, geometry, noise=self._noise)]
+        return of_points(Z, found.contacts, self._matcher.predicted, geometry, noise=self._noise)
+
     def _pulled(self, Z: FloatArray) -> bool:
         low = -highest(-Z)
         return -low > max(2 * self._floor, self._touch, PULLED_PART * max(highest(Z), 0.0))
@@ -128,7 +141,7 @@ class Analyser:
     def _found(self, Z: FloatArray) -> _Found:
         """The simplest that explains all of the frame."""
         if not highest(Z) > self._floor:
-            return _Found("none")
+            return self._lightly(Z) if self._tracker.touched else _Found("none")
         x, s, force, *_ = self._matcher.one(Z)
         one = Contact(float(x), math.remainder(s / self._matcher.model.geometry.core_radius, math.tau), float(force))
         if (end := self._matcher.end(x)) == "past":
@@ -143,6 +156,18 @@ class Analyser:
             better = left - _left(Z, self._spots.predicted(push)) > 2 * LINE_RIVAL * max(left / max(known.size - 3, 1), self._noise**2)
             return _Found(end, (_contact(push) if better else one,), spot=push)
         return self._beside_a_point(Z, allowed, push, patch) or _Found("wide", (one,))
+
+    def _lightly(self, Z: FloatArray) -> _Found:
+        """What touched before may do so still, between tactels of which each alone reads next to nothing."""
+        if not highest(Z) > 0:
+            return _Found("none")
+        x, s, force, *_ = self._matcher.one(Z)
+        one = Contact(float(x), math.remainder(s / self._matcher.model.geometry.core_radius, math.tau), float(force))
+        told = float(np.nansum(Z**2)) - _left(Z, self._matcher.predicted((one,)))
+        end = self._matcher.end(x)
+        if force < LIFT_PART * TOUCH_N or end == "past" or told < FAINT_SIGMAS**2 * self._noise**2:
+            return _Found("none")
+        return _Found(end, (one,))
 
     def _beside_a_point(self, Z: FloatArray, allowed: float, push: Spot, patch: Spot) -> _Found | None:
         """A point that pulls along the skin, a patch, a line, several points, or a patch that pulls: the first that explains the frame."""
