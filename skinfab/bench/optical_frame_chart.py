@@ -15,12 +15,15 @@ from skinfab.files import atomic_write
 _COLOURS = {PUBLISHED: "#000000", LINEAR: "#0072B2", WHOLE: "#E69F00", DEFAULT: "#D55E00"}
 _PANELS = {"offset_mm": "offset, mm", "depth_mm": "depth, mm", "angle_deg": "angle, degrees"}
 _DPI = 150
+#: Where a decade has numbers.
+_TICKS = (1.0, 2.0, 5.0)
 
 
 def draw(table: Sequence[Mapping[str, Any]], path: Path) -> None:
     """Write the chart as PNG: a panel a quantity, larger dots for more images; the default is ringed."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
     figure = Figure(figsize=(11.4, 4.2), dpi=_DPI, layout="constrained")
     FigureCanvasAgg(figure)
@@ -37,6 +40,10 @@ def draw(table: Sequence[Mapping[str, Any]], path: Path) -> None:
                     axes.plot(row["ms"], row[key], "o", ms=15, mfc="none", mec="#555555", mew=1.4)
             axes.plot([], [], "o-", color=colour, label=name)
         axes.set(xscale="log", yscale="log", xlabel="processor time a frame, ms", ylabel=f"mean error of the {label}")
+        for axis in (axes.xaxis, axes.yaxis):
+            axis.set_major_locator(LogLocator(subs=_TICKS))
+            axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+            axis.set_minor_formatter(NullFormatter())
         axes.grid(True, which="both", lw=0.3, alpha=0.6)
     handles, labels = figure.axes[-1].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=4, fontsize=8, title=f"large dots: {most} images learned from")
