@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
+from weakref import ref
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +21,7 @@ from gui.state.problem import Problem
 from gui.state.selection import Target
 from gui.state.wording import in_window
 from skinfab.flatten.methods import METHODS
+from skinfab.pieces import Piece
 from skinfab.seams.partial import Fault, Reopened
 from skinfab.skin import Skin
 
@@ -29,9 +31,10 @@ _MOST_SETTLED = 400
 
 @dataclass(frozen=True, eq=False)
 class _Settled:
-    """Seams whose pieces are known, (k, 2) int64, and what there is to say of these."""
+    """Seams whose pieces are known, (k, 2) int64, these pieces, and what there is to say of them."""
 
     seams: NDArray[np.int64]
+    pieces: tuple[ref[Piece], ...]  # those of a document that is no more need not be kept for this
     said: tuple[Problem, ...]
 
 
@@ -110,6 +113,7 @@ class SeamCommands:
             self._behind = False
             self._settle(result.skin, result)
             self._desk.session.do(f"skin {thickness:g} mm thick", result.skin)
+            self._tell_of_pieces()
             self._tell_of_sensors(asked, result)
 
         self._desk.work(
@@ -175,14 +179,13 @@ class SeamCommands:
         self._list_lifted()
         if skin is None:
             return
-        for settled in self._settled:
-            if skin.seams is settled.seams:
-                self._desk.session.report("flatten", settled.said)  # after undo, what was said then
-                self._behind = False
-                job = self._desk.runner.job
-                if job is not None and job.own:  # for seams that are no more
-                    self._desk.runner.cancel()
-                return
+        if self._known(skin) is not None:
+            self._tell_of_pieces()  # after undo, what was said then
+            self._behind = False
+            job = self._desk.runner.job
+            if job is not None and job.own:  # for seams that are no more
+                self._desk.runner.cancel()
+            return
         asked: dict[str, Any] = {
             "skin": skin,
             "method": self.method,
@@ -213,10 +216,12 @@ class SeamCommands:
                     self._follow()
                 return
             self._settle(skin, result)
+            # What is said of the pieces is said once they are there, so that it counts as of this step.
             if label:
                 session.do(label, skin)
             elif skin.pieces != asked.pieces or skin.seams is not asked.seams or skin.lifted is not asked.lifted:
                 session.amend(skin)
+            self._tell_of_pieces()
             self._tell_of_sensors(asked, result)
 
         return take
@@ -224,10 +229,20 @@ class SeamCommands:
     def _settle(self, skin: Skin, result: Reopened) -> None:
         """The pieces of `skin` are those of its seams, and this is what there is to say of them."""
         # Whether the sensors that are there fit is said by the check of all sensors, at every move; which are not, by `_list_lifted`.
-        settled = _Settled(skin.seams, tuple(_warning(f) for f in result.faults if f.piece or len(f.faces)))
+        settled = _Settled(skin.seams, tuple(map(ref, skin.pieces)), tuple(_warning(f) for f in result.faults if f.piece or len(f.faces)))
         self._settled.append(settled)
         del self._settled[:-_MOST_SETTLED]
-        self._desk.session.report("flatten", settled.said)
+
+    def _tell_of_pieces(self) -> None:
+        """What was said of the pieces of the seams as they are now, if these are known."""
+        settled = self._known(self._desk.skin)
+        if settled is not None:
+            self._desk.session.report("flatten", settled.said)
+
+    def _known(self, skin: Skin) -> _Settled | None:
+        """What is known of its seams: of just these pieces, else, where they were flattened anew since, of the last."""
+        same = [settled for settled in self._settled if settled.seams is skin.seams]
+        return next((settled for settled in same if [piece() for piece in settled.pieces] == list(skin.pieces)), same[-1] if same else None)
 
     def _tell_of_sensors(self, asked: Skin, result: Reopened) -> None:
         """At once, which sensors came back and which were taken off by this step."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import tkinter as tk
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from tkinter import font, ttk
 
 from gui.scale import px
@@ -22,6 +22,9 @@ _KIND, _BESIDE, _LEAST = 70, 6, 100
 #: Parts of a sentence about sensors that do not fit which say nothing of these.
 _ADVICE = re.compile(r"move, turn or shrink (it|them)|and \d+ more")
 
+#: Who says what is wrong with a piece, and who with the sensors on it.
+_CAUSE, _FOLLOWS = "flatten", "sensors"
+
 _MARKS = {"error": "error", "warning": "warning", "note": "note"}
 
 
@@ -31,9 +34,9 @@ class ProblemsPanel(ttk.Frame):
     def __init__(self, master: tk.Misc, session: Session, theme: Theme) -> None:
         super().__init__(master, name="problems", padding=(6, 2))
         self._session = session
-        #: What is listed, in that order, and when each line came: the how manieth time that the list changed.
+        #: What is listed, in that order, and when each line came: the how manieth time that the list changed, and at which step.
         self.shown: tuple[Problem, ...] = ()
-        self._came: dict[Problem, int] = {}
+        self._came: dict[Problem, tuple[int, int]] = {}
         self.title = tk.StringVar(self)
         ttk.Label(self, textvariable=self.title, style="Title.TLabel", name="title").pack(anchor="w")
         rows = ttk.Frame(self)
@@ -59,10 +62,9 @@ class ProblemsPanel(ttk.Frame):
 
     def _refresh(self) -> None:
         self.list.delete(*self.list.get_children())
-        latest = 1 + max(self._came.values(), default=0)
+        latest = 1 + max((when for when, _ in self._came.values()), default=0), self._session.step
         self._came = {p: self._came.get(p, latest) for p in self._session.problems}
-        # Only a few lines are seen at once: they must be those of what was just done.
-        problems = self.shown = tuple(sorted(once(self._session.problems), key=lambda p: (p.kind == "note", -self._came[p])))
+        problems = self.shown = tuple(ordered(once(self._session.problems), self._came))
         for k, problem in enumerate(problems):
             # A sentence ends with what to do: it must not be cut off.
             for j, line in enumerate(self._lines(problem.text)):
@@ -98,6 +100,38 @@ class ProblemsPanel(ttk.Frame):
             target = self.shown[place].target
             if target != NOTHING:
                 self._session.select(target)
+
+
+def ordered(problems: Sequence[Problem], came: Mapping[Problem, tuple[int, int]]) -> list[Problem]:
+    """What is new first, as only a few lines are seen at once, and notes last; but the cause before what follows from it.
+
+    When a piece comes to lie badly, its sensors do not fit by that same step: what is wrong with the piece stands above them.
+
+    Parameters
+    ----------
+    problems : sequence of Problem
+        The worst first.
+    came : mapping of Problem to (int, int)
+        When each came, larger the later, and by which step of the document.
+
+    Examples
+    --------
+    >>> from gui.state.selection import Target
+    >>> ring = Problem("P1 is a ring", "flatten", kind="warning", target=Target(piece="P1"))
+    >>> outside = Problem("C1 is outside P1", "sensors", target=Target(piece="P1", sensor="C1"))
+    >>> ordered([outside, ring], {ring: (1, 7), outside: (2, 7)}) == [ring, outside]
+    True
+    >>> ordered([outside, ring], {ring: (1, 7), outside: (2, 8)}) == [outside, ring]
+    True
+    """
+
+    def when(problem: Problem) -> int:
+        if problem.source != _CAUSE or not problem.target.piece:
+            return came[problem][0]
+        follow = (p for p in problems if p.source == _FOLLOWS and p.target.piece == problem.target.piece and came[p][1] == came[problem][1])
+        return max(came[p][0] for p in (problem, *follow))
+
+    return sorted(problems, key=lambda p: (p.kind == "note", -when(p), p.source != _CAUSE))
 
 
 def once(problems: Sequence[Problem]) -> list[Problem]:

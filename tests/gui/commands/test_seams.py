@@ -112,6 +112,58 @@ def test_flattened_anew_by_another_method_from_the_menu(cube):
     cube.app.seams.method = "auto"
 
 
+def test_what_is_said_of_pieces_flattened_anew_is_said_of_these(cube):
+    cut(cube)
+    cube.wait()
+    assert cube.problems("warning") == []
+    cube.app.seams.choose_method("harmonic")  # onto a disk, as which no cube lies well
+    cube.wait()
+    (said,) = cube.problems("warning")
+    assert "over the bound" in said
+    cube.press("Control-z")
+    cube.wait()
+    assert cube.problems("warning") == []
+    cube.press("Control-y")
+    cube.wait()
+    assert cube.problems("warning") == [said]
+    cube.app.seams.method = "auto"
+
+
+def test_a_piece_that_lies_badly_stands_above_its_sensors_that_do_not_fit(cube):
+    """Four sides of the cube as one strip, glued to a ring: what to do about it must be seen at once."""
+    V, E = cube.skin.object.V, cube.skin.mesh.topology.E
+    straight = E[(V[E[:, 0]] != V[E[:, 1]]).sum(axis=1) == 1]
+    lying = straight[V[straight[:, 0], 2] == V[straight[:, 1], 2]]
+    (upright,) = [pair for pair in straight.tolist() if (V[pair, :2] == 0).all()]
+    cut(cube, np.array([*lying, upright]))
+    cube.wait()
+    strip = max(cube.skin.pieces, key=lambda p: len(p.faces))
+    spiral, to_flat = make_pattern("contact-spiral", {"s": 24}), FlatMap(cube.skin.mesh, strip).to_flat
+    sensors = []
+    for axis, at in ((0, 0), (0, 40), (1, 0), (1, 40)):  # one in the middle of each side
+        face = next(f for f in strip.faces.tolist() if (V[cube.skin.mesh.F[f], axis] == at).all())
+        corners = V[cube.skin.mesh.F[face]]
+        middle = (corners.min(axis=0) + corners.max(axis=0)) / 2
+        weights = np.linalg.lstsq(np.vstack([corners.T, np.ones(3)]), [*middle, 1.0], rcond=None)[0]
+        x, y = (to_flat([face], [weights])[0] - spiral.middle).tolist()
+        sensors.append(Sensor(f"C{len(sensors) + 1}", strip.id, spiral, x, y, 0.0, len(sensors)))
+    cube.session.do("sensors", replace(cube.skin, sensors=tuple(sensors)))
+    cube.wait()
+    assert cube.app.problems.shown == ()
+    cut(cube, lying, "glue")
+    cube.wait()
+    first, *others = cube.app.problems.shown
+    assert (first.text, first.kind) == ("P1 is a ring with 2 borders: cut from one border to another", "warning")
+    assert {p.source for p in others} == {"sensors"} and "overlaps" in others[0].text
+    for key in ("Control-z", "Control-y"):
+        cube.press(key)
+        cube.wait()
+    assert cube.app.problems.shown[0] == first
+    # What is done next is the news.
+    cube.session.do("another", replace(cube.skin, sensors=(replace(cube.skin.sensors[0], x=500.0), *cube.skin.sensors[1:])))
+    assert "outside piece P1" in cube.app.problems.shown[0].text and cube.app.problems.shown[1] == first
+
+
 def test_what_cannot_be_cut_is_a_sentence(cube):
     cube.session.do("hopeless", replace(cube.skin, material="no-such-ink"))
     cube.press("F5")
