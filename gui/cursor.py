@@ -107,6 +107,7 @@ class KeyCursor:
         self._on = True
         width, height = self._canvas.winfo_width(), self._canvas.winfo_height()
         self._go(*(self.at or (width // 2, height // 2)))
+        self._again()  # now: what it is on must not take the place of what the keys do
         self.say(HINT.format(self._view.looking))
 
     def end(self) -> None:
@@ -149,15 +150,15 @@ class KeyCursor:
         width, height = self._canvas.winfo_width(), self._canvas.winfo_height()
         self.at = min(max(x, 0), max(width - 1, 0)), min(max(y, 0), max(height - 1, 0))
         self._show()
-        self._view.point_at(*self.at)
+        self._later()
 
     def _later(self) -> None:
-        """Point again, once the view has drawn what it shows now."""
+        """Point there once nothing else waits: of a key that is held down, a slow picture follows as it can, and lags behind no more."""
         if not self._idle:
-            self._idle = self._canvas.after(1, self._again)
+            self._idle = self._canvas.after_idle(self._again)
 
     def _again(self) -> None:
-        self._idle = ""
+        self._forget()
         if self.shown and self.at is not None:
             self._view.point_at(*self.at)
 

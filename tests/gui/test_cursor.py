@@ -102,6 +102,16 @@ def test_it_appears_moves_and_ends(cube, keyboard):
     assert not view.cursor.shown and not cross(view.canvas), "who takes the mouse has the mouse's pointer"
 
 
+def test_many_keys_in_a_row_are_one_look(cube, keyboard, monkeypatch):
+    keyboard.press("F3")
+    looked, look = [], cube.view3d.hover_at
+    monkeypatch.setattr(cube.view3d, "hover_at", lambda x, y: looked.append((x, y)) or look(x, y))
+    for _ in range(40):
+        cube.view3d.canvas.event_generate("<Shift-Right>", when="tail")
+    cube.app.root.update()
+    assert looked[-1] == cube.view3d.cursor.at and len(looked) < 5
+
+
 def test_what_is_under_it_stays_there_when_it_is_enlarged(cube, keyboard):
     keyboard.press("F3")
     keyboard.to_object(cube.skin.object.V[0], inwards=0.05)
