@@ -131,12 +131,17 @@ def train(args: argparse.Namespace) -> int:
 
     from skinfab.files import require_apart
     from skinfab.fingertip.force.gravity_model import learn_hand, left_over, save_hand
+    from skinfab.fingertip.force.logs import once
+    from skinfab.fingertip.force.weighings import require_alike
     from skinfab.staging import staged_folder
 
     require_apart(args.output, _TRAINED, args.logs)
     read = [_poses(path) for path in args.logs]
+    kept, copies = once([log for log, _ in read])
+    read = [(log, poses) for log, poses in read if any(log is each for each in kept)]
     weighings = [poses for _, poses in read]
-    notes = [note for log, poses in read for note in (*log.notes, *poses.notes)]
+    notes = [*copies, *(note for log, poses in read for note in (*log.notes, *poses.notes))]
+    require_alike(weighings, [log.name for log, _ in read])
     model = learn_hand(weighings)
     (before, after) = left_over(weighings) if len(read) > 1 else (None, None)
     if not model.weight_n:
@@ -189,6 +194,10 @@ def run(args: argparse.Namespace) -> int:
     require_apart(args.output, _RUN, [*args.logs, *([args.model] if args.model else [])])
     model, simulated_model = load_hand(args.model) if args.model else (None, False)
     found, notes = [], []
+    if model and model.weighings == 1:
+        notes.append(
+            "the model is of one weighing, which shows no drift: what is stated holds as if the offsets had stayed where they were"
+        )
     logs = [path for path in args.logs if not _is_truth(path)]
     notes += [f"{path} is the simulator's table of what is true, and was passed over" for path in args.logs if path not in logs]
     if not logs:
@@ -254,6 +263,7 @@ def _one(path: Path, args: argparse.Namespace, model: HandModel | None) -> tuple
     from skinfab.fingertip.force.gravity import centre_of_gravity, published_centre, require_certain
     from skinfab.fingertip.force.gravity_model import centre_with, mass_with
     from skinfab.fingertip.force.mass import fit_mass
+    from skinfab.fingertip.force.same_hand import TELLING, require_own_hand
     from skinfab.fingertip.force.wrench import require_nmm
 
     log, poses = _poses(path)
@@ -265,10 +275,13 @@ def _one(path: Path, args: argparse.Namespace, model: HandModel | None) -> tuple
             centre = centre_of_gravity(poses.force, poses.moment, poses.covariance, freedom=poses.freedom)
         else:
             centre = centre_with(model, poses)
+            require_own_hand(model, poses, centre)
         centre = replace(centre, covariance=centre.covariance + args.place_sd**2 * np.eye(3))
         require_certain(centre, poses.force, worst_sd_mm=args.max_sd)
     except (InputError, RefusedError) as fault:
         raise _named(path, fault) from fault
+    if model is not None and len(poses.force) < TELLING:
+        notes.append(f"{log.name}: {len(poses.force)} poses hardly show whether the model is of this hand as it holds here; {TELLING} do")
     if not centre.meets:
         notes.append(
             f"{log.name}: the lines of the poses do not meet in a point (misfit {centre.misfit:.1f}): the object or a contact moved, it "

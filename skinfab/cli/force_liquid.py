@@ -109,10 +109,13 @@ def train(args: argparse.Namespace) -> int:
     """Learn the limit, judge it on recordings that were held out, and write the model."""
     from skinfab.files import require_apart
     from skinfab.fingertip.force.liquid_model import save_liquid, train_liquid
+    from skinfab.fingertip.force.logs import once
     from skinfab.staging import staged_folder
 
     require_apart(args.output, _TRAINED, args.logs)
     logs, notes = _read(args.logs)
+    logs, copies = once(logs)
+    notes += copies
     trained = train_liquid(logs, false_alarm=args.false_alarm, seconds=args.seconds)
     made_from = [{"file": log.name, "sha256": log.sha256, "label": log.label, "simulated": log.simulated} for log in logs]
     simulated, model = any(log.simulated for log in logs), trained.model

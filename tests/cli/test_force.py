@@ -107,6 +107,10 @@ def test_a_hand_that_was_weighed_needs_two_poses(tmp_path: Path, capsys: pytest.
     assert len(made) == 16
     empty = [logs / f"empty-mid-{k}.csv" for k in (1, 2)]
     learned = said(capsys, "train", "gravity", *empty, "-o", tmp_path / "hand")
+    copy = logs / "copy.csv"
+    copy.write_bytes(Path(empty[0]).read_bytes())
+    thrice = said(capsys, "train", "gravity", *empty, copy, "-o", tmp_path / "thrice")
+    assert thrice["weighings"] == 2 and any("copy.csv is the same file as" in note for note in thrice["notes"])
     assert learned["simulated"] and learned["weight_n"] == pytest.approx(0.04 * 9.80665, rel=0.1) and len(learned["made_from"]) == 2
     left = learned["held_out"]
     assert left["after"]["force_n"] < left["before"]["force_n"] / 5 and left["after"]["moment_nmm"] < left["before"]["moment_nmm"] / 5

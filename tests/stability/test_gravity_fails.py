@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from skinfab.errors import RefusedError
+from skinfab.errors import InputError, RefusedError
 from skinfab.fingertip.force.gravity import (
     Centre,
     centre_of_gravity,
@@ -13,10 +13,13 @@ from skinfab.fingertip.force.gravity import (
     published_centre,
     require_certain,
 )
-from skinfab.fingertip.force.gravity_simulator import HandScene, directions, hold
+from skinfab.fingertip.force.gravity_model import centre_with, learn_hand
+from skinfab.fingertip.force.gravity_simulator import PAPER_TRUTH, HandScene, directions, hold
 from skinfab.fingertip.force.liquid import stirred
 from skinfab.fingertip.force.liquid_simulator import stir
 from skinfab.fingertip.force.poses import poses_of
+from skinfab.fingertip.force.same_hand import require_own_hand
+from skinfab.fingertip.force.weighings import require_alike
 from skinfab.rates import wilson
 
 WEIGHT_N, TRUE = 1.67, np.array([5.0, -3.0, 150.0])
@@ -147,3 +150,36 @@ def test_a_threshold_on_how_far_lines_wander_takes_noise_for_water() -> None:
     # Sample by sample both wander by centimetres: the water is a few per cent of that.
     assert naive(water) < 1.1 * naive(quiet)
     assert stirred(water).liquid and not stirred(quiet).liquid
+
+
+DRIFTING = HandScene(tip_kg=0.01, drift_n=0.01)
+
+
+def test_the_model_of_another_grasp_is_wrong_by_a_centimetre_without_a_sign_and_is_refused() -> None:
+    off = []
+    for seed in range(6):
+        mine, other = PAPER_TRUTH[seed % 5], PAPER_TRUTH[(seed + 1) % 5]
+        model = learn_hand([poses_of(hold(mine, seed=seed, scene=DRIFTING, weighing=k).log) for k in range(3)])
+        four = replace(DRIFTING, poses=4)
+        own = poses_of(hold(mine, seed=seed, scene=four).log)
+        require_own_hand(model, own, centre_with(model, own))
+        there = hold(other, seed=seed + 1, scene=four)
+        poses = poses_of(there.log)
+        found = centre_with(model, poses)
+        off.append(np.linalg.norm(found.point - there.centre))
+        assert off[-1] > 3 * found.sd_mm  # as it stated
+        with pytest.raises(RefusedError, match="not of this hand as it holds here"):
+            require_own_hand(model, poses, found)
+    assert np.median(off) > 10
+
+
+def test_a_weighing_with_something_held_is_named() -> None:
+    empty = [poses_of(hold(seed=2, scene=DRIFTING, weighing=k).log) for k in range(2)]
+    held = poses_of(hold(seed=2, scene=DRIFTING).log)
+    spoilt = learn_hand([*empty, held])
+    assert abs(spoilt.weight_n - learn_hand(empty).weight_n) > 0.3  # and nothing said so
+    require_alike(empty, ["a", "b"])
+    with pytest.raises(InputError, match=r"^c feels a weight of 2\.\d+ N .* and the others about 0\.\d+ N; was something held"):
+        require_alike([*empty, held], ["a", "b", "c"])
+    with pytest.raises(InputError, match=r"^c feels"):
+        require_alike([held, empty[0]], ["c", "a"])

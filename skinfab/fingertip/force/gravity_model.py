@@ -56,12 +56,15 @@ class HandModel:
         The weight by its place.
     covariance : (10, 10) float
         Of all of these, and of what the offset drifts until the next time.
+    weighings : int
+        That it was learned from; a single one shows no drift.
     """
 
     offset: FloatArray
     weight_n: float
     moment_nmm: FloatArray
     covariance: FloatArray
+    weighings: int
 
     def less(self, force: FloatArray, moment: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Force and moment (n, 3) of what is held, and the direction of gravity (n, 3) in each pose.
@@ -190,7 +193,7 @@ def learn_hand(weighings: Sequence[Poses]) -> HandModel:
             contrast = np.kron(apart, np.eye(6)[part])
             own = contrast @ spread[: 6 * count, : 6 * count] @ contrast.T
             covariance[part, part] += (1 + 1 / count) * _drift(contrast @ offsets.ravel(), own) * np.eye(3)
-    return HandModel(offsets.mean(axis=0), float(found[-4]), found[-3:].copy(), covariance)
+    return HandModel(offsets.mean(axis=0), float(found[-4]), found[-3:].copy(), covariance, count)
 
 
 def _drift(apart: FloatArray, own: FloatArray) -> float:
@@ -331,7 +334,7 @@ def _unturned() -> RefusedError:
 def save_hand(model: HandModel, path: str | Path, *, facts: dict[str, Any]) -> None:
     """Write a model with what it was made from; `facts` says whether that was simulated."""
     arrays = {"offset": model.offset, "weight": np.array([model.weight_n]), "moment": model.moment_nmm, "covariance": model.covariance}
-    save_model(path, kind=KIND, facts=facts, arrays=arrays)
+    save_model(path, kind=KIND, facts=facts | {"weighings": model.weighings}, arrays=arrays)
 
 
 def load_hand(path: str | Path) -> tuple[HandModel, bool]:
@@ -347,7 +350,9 @@ def load_hand(path: str | Path) -> tuple[HandModel, bool]:
     a = saved.arrays
     if wrong := next((name for name, shape in shapes.items() if name not in a or a[name].shape != shape), None):
         raise InputError(f"{path}: {wrong} is missing or has another shape than {shapes[wrong]}; train it again")
-    model = HandModel(a["offset"], float(a["weight"][0]), a["moment"], a["covariance"])
+    if not isinstance(count := saved.facts.get("weighings"), int):
+        raise InputError(f"{path} does not say how many weighings it is of; train it again")
+    model = HandModel(a["offset"], float(a["weight"][0]), a["moment"], a["covariance"], count)
     c = model.covariance
     if model.weight_n < 0 or np.abs(c - c.T).max() > _ROUNDING * np.abs(c).max() or np.linalg.eigvalsh(c)[0] < -_ROUNDING * np.abs(c).max():
         raise InputError(f"{path}: its weight or its covariance is none; train it again")

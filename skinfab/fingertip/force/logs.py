@@ -9,7 +9,7 @@ from __future__ import annotations
 import csv
 import io
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -101,6 +101,25 @@ def read_wrench(path: str | Path) -> WrenchLog:
         tuple(notes),
         all(name in table.units for name in names[3:]),
     )
+
+
+def once(logs: Sequence[WrenchLog]) -> tuple[list[WrenchLog], tuple[str, ...]]:
+    """Each file once, and what to know: a copy is no second measurement, and would show no scatter.
+
+    Examples
+    --------
+    >>> rest = np.arange(2.0), np.zeros((2, 3)), np.zeros((2, 3))
+    >>> kept, notes = once([WrenchLog("a.csv", *rest, sha256="1"), WrenchLog("b.csv", *rest, sha256="1")])
+    >>> [log.name for log in kept], notes
+    (['a.csv'], ('b.csv is the same file as a.csv, and counts once',))
+    """
+    first: dict[str, WrenchLog] = {}
+    notes = []
+    for k, log in enumerate(logs):
+        known = first.setdefault(log.sha256 or f"{k}", log)
+        if known is not log:
+            notes.append(f"{log.name} is the same file as {known.name}, and counts once")
+    return list(first.values()), tuple(notes)
 
 
 def write_wrench(log: WrenchLog, path: str | Path) -> None:

@@ -109,7 +109,7 @@ def test_a_model_comes_back_as_it_was_and_others_are_refused(tmp_path: Path) -> 
     save_model(tmp_path / "b.npz", kind="force hand", facts={}, arrays={"offset": np.zeros(3)})
     with pytest.raises(InputError, match="offset is missing or has another shape"):
         load_hand(tmp_path / "b.npz")
-    save_hand(HandModel(model.offset, -1.0, model.moment_nmm, model.covariance), tmp_path / "c.npz", facts={})
+    save_hand(HandModel(model.offset, -1.0, model.moment_nmm, model.covariance, 1), tmp_path / "c.npz", facts={})
     with pytest.raises(InputError, match="its weight or its covariance is none"):
         load_hand(tmp_path / "c.npz")
     save_model(tmp_path / "d.npz", kind="force liquid", facts={}, arrays={})
