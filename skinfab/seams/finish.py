@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from skinfab.flatten.bijective import keep_apart
+from skinfab.flatten.bijective import flatten_bijective, keep_apart
 from skinfab.flatten.isometric import IsometricSolver
 from skinfab.mesh.model import Mesh
 from skinfab.seams.auto import Seams
@@ -15,7 +15,7 @@ from skinfab.seams.refine import Judged
 def finish(mesh: Mesh, seams: Seams, limits: Limits) -> Seams:
     """The same pieces, each at its least d.
 
-    A piece that would cover itself at its least d is driven to the least d without overlap.
+    A piece that would cover itself at its least d, be it by less than counts, is driven to the least d without overlap.
 
     Parameters
     ----------
@@ -32,10 +32,17 @@ def _finish(mesh: Mesh, item: Judged, limits: Limits) -> Judged:
     piece, before = item
     V = mesh.V[piece.vertices]
     solver = IsometricSolver(V, piece.F)
-    for apart in (None, keep_apart(V, piece.topology)):
-        after = verdict_of(mesh, piece, solver.refine(before.UV, apart=apart).UV, limits)
-        if after.accepted and after.distortion.mean <= before.distortion.mean:
-            return piece, after
-        if not after.overlaps:
-            break
-    return item
+    free = verdict_of(mesh, piece, solver.refine(before.UV).UV, limits)
+    better = free.accepted and free.distortion.mean <= before.distortion.mean
+    if free.distortion.overlap_mm2 == 0:
+        return (piece, free) if better else item
+    # A little overlap is accepted, but none is better where the bound leaves room for it.
+    clear = before.distortion.overlap_mm2 == 0
+    if clear:
+        uv = solver.refine(before.UV, apart=keep_apart(V, piece.topology)).UV
+    else:
+        uv = flatten_bijective(V, piece.F, topology=piece.topology, hopeless_above=limits.mean)
+    apart = verdict_of(mesh, piece, uv, limits)
+    if apart.accepted and apart.distortion.overlap_mm2 == 0 and (apart.distortion.mean <= before.distortion.mean or not clear):
+        return piece, apart
+    return (piece, free) if better else item

@@ -20,7 +20,6 @@ from skinfab.mesh.model import Mesh
 from skinfab.seams.cut import OpenPiece, mesh_edges, open_pieces
 from skinfab.seams.darts import dart_ways
 from skinfab.seams.release import Way, held_releases, releases, right_of
-from skinfab.tolerances import OVERLAP_FRACTION
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -166,8 +165,7 @@ def grow_darts(
         if len(parts) != 1:  # the boundary touches itself there
             return now
         now, solver = _opened(mesh, now, parts[0], way, edges)
-    area = float(mesh.face_areas[now.piece.faces].sum())
-    flat = now.apart or overlap_area(now.piece.F, now.UV, topology=now.piece.topology) <= OVERLAP_FRACTION * area
+    flat = now.apart or overlap_area(now.piece.F, now.UV, topology=now.piece.topology) == 0
     return replace(now, good=bool(now.mean <= bound and flat))
 
 

@@ -39,6 +39,19 @@ def test_a_piece_that_would_cover_itself_is_kept_from_it() -> None:
     assert after.distortion.overlap_mm2 == 0 and after.distortion.mean <= before.distortion.mean
 
 
+def test_overlap_that_is_taken_for_nothing_goes_where_the_bound_allows(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("skinfab.seams.judge.OVERLAP_FRACTION", 1.0)
+    V, F = shapes.helicoid()
+    limits = Limits(mean=6.0)
+    mesh, seams = one_piece(V, F, limits)
+    ((_, before),), ((_, after),) = seams.pieces, finish(mesh, seams, limits).pieces
+    assert before.accepted and before.distortion.overlap_mm2 > 1
+    assert after.accepted and after.distortion.overlap_mm2 == 0
+    tight = Limits(mean=before.distortion.mean + 1e-9)
+    ((_, kept),) = finish(mesh, seams, tight).pieces
+    assert kept.accepted and kept.distortion.overlap_mm2 > 1
+
+
 def test_nothing_gets_worse() -> None:
     mesh = Mesh(*shapes.sphere())
     limits = Limits(mean=4.05)
