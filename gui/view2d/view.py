@@ -88,6 +88,7 @@ class View2D(ttk.Frame):
         session.listen("hover", self.surface.refresh)
         self._skin: Skin | None = None
         derived.needs(self._parts)
+        self.restyle(theme)
         self._on_skin()
 
     # What is seen
@@ -95,6 +96,8 @@ class View2D(ttk.Frame):
     def restyle(self, theme: Theme) -> None:
         """Change colours."""
         self.theme = theme
+        # A line round it shows that keys go there, as round the object.
+        self.surface.widget.configure(highlightthickness=1, highlightbackground=theme.border, highlightcolor=theme.accent)
         self.redraw()
 
     def fit(self) -> None:

@@ -314,3 +314,22 @@ def test_what_is_shown_whole_stays_whole_in_a_view_of_another_shape(window, size
     window.root.geometry("900x700+0+0")
     window.root.update()
     assert view.plane.scale == zoomed.scale, "what was chosen is not changed"
+
+
+def test_a_line_round_it_shows_that_keys_go_there(window):
+    from PIL import ImageGrab
+
+    widget, elsewhere = window.view.surface.widget, window.view
+
+    def border():
+        window.root.update()
+        x, y = widget.winfo_rootx(), widget.winfo_rooty() + widget.winfo_height() // 2
+        return ImageGrab.grab(xdisplay=window.root.winfo_screen().rsplit(".", 1)[0] or None, bbox=(x, y, x + 1, y + 1)).getpixel((0, 0))
+
+    widget.focus_force()
+    window.root.update()
+    assert border() == rgb(window.view.theme.accent)
+    elsewhere.focus_force()
+    assert border() == rgb(window.view.theme.border)
+    window.view.restyle(DARK)
+    assert border() == rgb(DARK.border)
