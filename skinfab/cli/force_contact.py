@@ -178,6 +178,7 @@ def _logged(
     from skinfab.errors import InputError
     from skinfab.fingertip.force.logs import read_wrench
     from skinfab.fingertip.force.motion import Limits, MotionWatch, find_motions
+    from skinfab.fingertip.force.poses import require_alive
     from skinfab.fingertip.force.tare import tared
     from skinfab.fingertip.force.wrench import require_nmm
     from skinfab.progress import terminal_progress
@@ -192,6 +193,7 @@ def _logged(
                 raise InputError(f"two logs are called {log.name}; give each a name of its own")
             if not math.isfinite(log.rate_hz):
                 raise InputError(f"{path} has a single row; that is no log of a motion")
+            require_alive(log)
             log = tared(log, seconds=args.tare) if args.tare else log
             if not log.units_said:
                 require_nmm(log.force, log.moment, reach_mm=reach(surface), least_force=least, where=log.name)
@@ -219,7 +221,9 @@ def _watched(
 ) -> tuple[list[WrenchLog], list[list[Motion]], dict[str, float]]:
     """What a port sent, its events, and how long decisions took."""
     from skinfab.cli.force_port import watch_port
+    from skinfab.errors import InputError
     from skinfab.fingertip.force.motion import Limits
+    from skinfab.fingertip.force.poses import require_alive
 
     live = watch_port(
         args.port,
@@ -232,7 +236,13 @@ def _watched(
         model=model,
         quiet=args.json,
     )
-    return [replace(live.log, notes=live.notes)], [list(live.motions)], live.latency
+    notes = live.notes
+    if model is None:  # a matrix mixes what is dead with what lives
+        try:
+            require_alive(live.log)
+        except InputError as fault:  # what came is written all the same: nobody can record it again
+            notes = (*notes, str(fault))
+    return [replace(live.log, notes=notes)], [list(live.motions)], live.latency
 
 
 def _facts(

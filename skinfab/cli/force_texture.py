@@ -229,9 +229,11 @@ def _decided(
 
 def _read_one(path: Path) -> tuple[WrenchLog, Slide]:
     from skinfab.fingertip.force.logs import read_wrench
+    from skinfab.fingertip.force.poses import require_alive
     from skinfab.fingertip.force.texture import sliding_part
 
     log = read_wrench(path)
+    require_alive(log)
     return log, sliding_part(log)
 
 

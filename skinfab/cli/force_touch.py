@@ -54,6 +54,7 @@ def train(args: argparse.Namespace) -> int:
     from skinfab.files import require_apart
     from skinfab.fingertip.force.contact import LEAST_FORCE_N
     from skinfab.fingertip.force.logs import read_wrench
+    from skinfab.fingertip.force.poses import require_alive
     from skinfab.fingertip.force.touch_model import learn_touches, read_places, save_touches
     from skinfab.fingertip.force.wrench import require_nmm
     from skinfab.staging import staged_folder
@@ -65,6 +66,7 @@ def train(args: argparse.Namespace) -> int:
     if twice := next((name for name in names if names.count(name) > 1), None):
         raise InputError(f"two logs are called {twice}; give each file a name of its own")
     for log in logs:
+        require_alive(log)
         if not log.units_said:
             require_nmm(log.force, log.moment, reach_mm=reach(surface), least_force=LEAST_FORCE_N, where=log.name)
     trained = learn_touches(logs, places, surface, rest_s=args.tare)

@@ -1,17 +1,23 @@
 """Where a six-axis fingertip fails: what the plain way does there, so that the case is real, and what the project does instead."""
 
+from dataclasses import replace
+from pathlib import Path
+
 import numpy as np
 import pytest
 
+from skinfab.cli.main import main
 from skinfab.errors import RefusedError
 from skinfab.fingertip.force.contact import Hemisphere, locate
 from skinfab.fingertip.force.contact_mesh import TipMesh
 from skinfab.fingertip.force.grasp import CUBOID, LEARNED, NEW, OVER, PAPER, SHAPES, HandScene, Solid, simulate_grasp, touches
+from skinfab.fingertip.force.logs import write_wrench
 from skinfab.fingertip.force.motion import Limits, MotionWatch, find_motions
 from skinfab.fingertip.force.motion_score import published as published_events
 from skinfab.fingertip.force.motion_simulator import grasp_log
 from skinfab.fingertip.force.reconstruct import published, reconstruct
 from skinfab.fingertip.force.shape import NONE, ShapeModel, decide, features_of, fit_shapes, misfit_limits
+from skinfab.fingertip.force.simulator import MATERIALS, slide
 from skinfab.fingertip.force.tare import tared
 from skinfab.fingertip.force.touch_fit import fit_matrix, found_at
 from skinfab.fingertip.force.touch_model import learn_touches, touches_of
@@ -149,8 +155,6 @@ def test_raw_contacts_are_learned_by_heart(models: dict[str, ShapeModel]) -> Non
 
 
 def test_a_hand_that_has_moved_over_the_table_changes_raw_features_alone(models: dict[str, ShapeModel]) -> None:
-    from dataclasses import replace
-
     grasps = [simulate_grasp(solid, seed=seed) for solid in NEW for seed in range(8)]
     moved = [replace(each, position=each.position + np.array([80.0, -60.0, 40.0])) for each in grasps]
     for name, changes in (("published", True), ("misfits", False)):
@@ -172,8 +176,6 @@ def test_a_square_post_grasped_on_its_middles_is_a_cylinder_too(models: dict[str
 
 
 def test_fingers_of_two_grasps_mixed_up_are_surely_something_for_who_asks_the_network_alone(models: dict[str, ShapeModel]) -> None:
-    from dataclasses import replace
-
     rng = np.random.default_rng(5)
     grasps = [simulate_grasp(NEW[k % 3], seed=rng) for k in range(30)]
     mixed = [replace(each, turn=other.turn) for each, other in zip(grasps, grasps[::-1], strict=True)]
@@ -246,3 +248,18 @@ def test_a_wrong_row_among_places_costs_its_touch_alone_and_many_are_refused_by_
     exchanged = wrong | {names[0]: places[names[9]], names[9]: places[names[0]]}
     with pytest.raises(RefusedError, match=r"3 of 10 touches are not where .*touch-1\.csv is .*touch-4\.csv"):
         learn_touches(logs, exchanged, Hemisphere())
+
+
+def test_a_dead_channel_makes_up_motions_and_no_command_reads_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    log, true = grasp_log(seed=4, episodes=1)
+    clean, dead = (tared(each, seconds=0.9) for each in (log, replace(log, moment=log.moment * [0.0, 1.0, 1.0])))
+    found = [find_motions(each.time, each.force, each.moment, MotionWatch(Limits(31.0), rate_hz=200)) for each in (clean, dead)]
+    assert len(found[0]) == len(true) < len(found[1])
+    touch = simulate_touches(1, seed=1)[0]
+    (tmp_path / "places.csv").write_text("log,x_mm,y_mm,z_mm\na.csv,0,0,20\n")
+    train = ["train", "contact", "--places", str(tmp_path / "places.csv")]
+    slid = slide(MATERIALS["towel"], seed=1, label="towel")
+    for verb, whole in ((["run", "contact"], log), (train, touch[0]), (["train", "texture"], slid)):
+        write_wrench(replace(whole, moment=whole.moment * [0.0, 1.0, 1.0]), tmp_path / "a.csv")
+        assert main(["force", *verb, str(tmp_path / "a.csv"), "-o", str(tmp_path / "out")]) == 1
+        assert "a.csv: Mx reads 0 all the time, so nothing measures it" in capsys.readouterr().err
