@@ -202,7 +202,10 @@ def choose_tab(window: Window, name: str) -> None:
 
 
 def help_and_crash(album: Album, window: Window) -> None:
-    """The list of keys; and what is asked after the window was killed."""
+    """A line by keys alone, the list of keys; and what is asked after the window was killed."""
+    window.key("F4", "F3", "c", "shift+Right", *["Down"] * 6, "Return", *["Up"] * 4, *["Right"] * 2)
+    album.take(window, "cursor")
+    window.key("Escape", "Escape", "Escape")
     window.key("F1")
     until(lambda: window.exists(".question.body.buttons.answer0"), "the keys")
     album.take(window, "keys")
