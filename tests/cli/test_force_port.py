@@ -127,7 +127,7 @@ def test_moments_in_n_m_whose_unit_no_device_names_are_refused() -> None:
 
 def test_a_model_straightens_what_a_port_sends() -> None:
     made = recording(1.0)
-    twice = TouchModel(2 * np.eye(6), SensorNoise(), "a dome of 20 mm")
+    twice = TouchModel(2 * np.eye(6), SensorNoise(), "a dome of 20 mm", np.zeros((36, 36)))
     with PtyServer(made.stream, made, rate_hz=0, kind=FRAME_64) as device:
         watched = watch_port(str(device.path), limits=LIMITS, seconds=1, model=twice, quiet=True)
     assert watched.log.moment == pytest.approx(2 * made.values[:, 3:])

@@ -35,7 +35,7 @@ FLAGS = {
     16: "the force's line enters the surface more than once",
     32: "the force's line enters by the face that the fingertip is mounted with",
 }
-_INVALID, _NO_CONTACT, _MISSED, _TORSION, _AMBIGUOUS, _MOUNTED = FLAGS
+_INVALID, _NO_CONTACT, _MISSED, TORSION, _AMBIGUOUS, _MOUNTED = FLAGS
 
 
 @dataclass(frozen=True)
@@ -132,7 +132,7 @@ class Contacts:
     @property
     def twisted(self) -> BoolArray:
         """Where a moment about the force's line shows that it is no single point contact."""
-        return (self.flags & _TORSION) != 0
+        return (self.flags & TORSION) != 0
 
     @property
     def ambiguous(self) -> BoolArray:

@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skinfab.errors import InputError, RefusedError
-from skinfab.fingertip.force.contact import LEAST_FORCE_N, Hemisphere
+from skinfab.fingertip.force.contact import LEAST_FORCE_N, Hemisphere, locate
 from skinfab.fingertip.force.logs import WrenchLog
 from skinfab.fingertip.force.tare import tared
 from skinfab.fingertip.force.touch_fit import Touch, fit_matrix, found_at, held_out, touch_of, touches_apart
@@ -43,6 +43,8 @@ _BLOCK_S = 0.05
 _WORST_MM = 3.0
 #: More of the touches than this part may not be left out: it is no longer clear who is right.
 _MOST_APART = 0.25
+#: Steps of force (N) and moment (N mm) by which points are moved to see how much: below what is felt, far above rounding.
+_STEPS = (1e-3,) * 3 + (1e-2,) * 3
 _MAX_BYTES = 10_000_000
 
 
@@ -59,16 +61,35 @@ class TouchModel:
         As the sensor rests.
     surface : str
         The fingertip that was touched, see `named`.
+    spread : (36, 36) float
+        Covariance of the matrix's numbers, row by row.
     """
 
     matrix: FloatArray
     noise: SensorNoise
     surface: str
+    spread: FloatArray
 
     def corrected(self, log: WrenchLog) -> WrenchLog:
         """The log as it acts on the fingertip; its offset must be off."""
         wrench = np.hstack([log.force, log.moment]) @ self.matrix.T
         return replace(log, force=np.ascontiguousarray(wrench[:, :3]), moment=np.ascontiguousarray(wrench[:, 3:]))
+
+    def own_error(self, log: WrenchLog, surface: Hemisphere | TipMesh) -> FloatArray:
+        """How far the matrix's own error moves each point of a log that was corrected by it, (n,) mm, to first order."""
+        acts = np.hstack([log.force, log.moment])
+        read = acts @ np.linalg.inv(self.matrix).T
+        moved = np.zeros((len(acts), 6, 3))
+        for axis, step in enumerate(_STEPS):
+            ahead, behind = (np.ascontiguousarray(acts + sign * step * np.eye(6)[axis]) for sign in (0.5, -0.5))
+            points = [locate(each[:, :3], each[:, 3:], surface, least_force=0.0).point for each in (ahead, behind)]
+            moved[:, axis] = (points[0] - points[1]) / step
+        # Along the principal axes of the matrix's error, each of which changes a wrench w by E w.
+        variance, axes = np.linalg.eigh(self.spread)
+        total = np.zeros(len(acts))
+        for own, axis_of in zip(np.maximum(variance, 0.0), axes.T, strict=True):
+            total += own * (np.einsum("nik,ni->nk", moved, read @ axis_of.reshape(6, 6).T) ** 2).sum(axis=1)
+        return np.sqrt(total)
 
     def require_surface(self, surface: Hemisphere | TipMesh) -> None:
         """Refuse another fingertip than the one that was touched.
@@ -169,14 +190,14 @@ def learn_touches(
             f"touches held out are found {middle[1]:.1f} mm from their places (as read: {middle[0]:.1f} mm), so one does not belong to the "
             "other; are the places in the sensor's frame and in mm, and is the force's sign that of the force on the fingertip?"
         )
-    matrix, _ = fit_matrix(kept)
+    matrix, spread = fit_matrix(kept)
     out = tuple(_elsewhere(touches[k], matrix, places, surface) for k in apart)
     if len(apart) > _MOST_APART * len(touches) or len({tuple(np.round(touch.place, 3)) for touch in kept}) < LEAST_PLACES:
         raise RefusedError(
             f"{len(apart)} of {len(touches)} touches are not where the table says: {'; '.join(out)}; mend the table, or touch again"
         )
     helps = middle[1] < middle[0]
-    model = TouchModel(matrix, noise, named(surface)) if helps else TouchModel(np.eye(6), noise, named(surface))
+    model = TouchModel(matrix if helps else np.eye(6), noise, named(surface), spread)
     return Trained(model, *middle, max(before), max(after), len(kept), out)
 
 
@@ -265,7 +286,7 @@ def save_touches(trained: Trained, path: str | Path, *, made_from: Sequence[dict
         "simulated": any(each["simulated"] for each in made_from),
         "made_from": list(made_from),
     }
-    arrays = {"matrix": m.matrix, "noise": np.array([m.noise.force_n, m.noise.moment_nmm])}
+    arrays = {"matrix": m.matrix, "spread": m.spread, "noise": np.array([m.noise.force_n, m.noise.moment_nmm])}
     save_model(path, kind=KIND, facts=facts, arrays=arrays)
 
 
@@ -279,10 +300,11 @@ def load_touches(path: str | Path) -> tuple[TouchModel, bool]:
     """
     saved = load_model(path, kind=KIND)
     try:
-        matrix, (force, moment) = saved.arrays["matrix"], saved.arrays["noise"].tolist()
+        matrix, spread = saved.arrays["matrix"], saved.arrays["spread"]
+        (force, moment) = saved.arrays["noise"].tolist()
         surface, simulated = str(saved.facts["surface"]), bool(saved.facts["simulated"])
     except (KeyError, TypeError, ValueError) as fault:
         raise InputError(f"{path}: a part of the model is missing or wrong ({fault!r}); train it again") from fault
-    if matrix.shape != (6, 6) or not np.linalg.det(matrix) > 0:
+    if matrix.shape != (6, 6) or spread.shape != (36, 36) or not np.linalg.det(matrix) > 0:
         raise InputError(f"{path}: its matrix is none of a sensor; train it again")
-    return TouchModel(matrix, SensorNoise(force, moment), surface), simulated
+    return TouchModel(matrix, SensorNoise(force, moment), surface, spread), simulated

@@ -38,6 +38,22 @@ def test_a_crooked_sensor_finds_places_that_it_was_not_taught(trained: Trained) 
         assert np.median(off) < bound if bound else np.median(off) > 1.0
 
 
+def test_what_is_stated_of_a_point_holds_the_matrixs_own_error() -> None:
+    inside, by_noise = [], []
+    for seed in range(6):
+        model = learn_touches(*simulate_touches(10, seed=seed), DOME).model
+        exact = TouchScene(place_mm=0.0)
+        logs, places = simulate_touches(25, seed=seed, scene=exact)
+        for log in logs:
+            used = model.corrected(tared(log, seconds=0.5))
+            found = locate(used.force[600:], used.moment[600:], noise=model.noise)  # at about 3 N, where noise is little
+            off = np.linalg.norm(found.point - places[log.name], axis=1)
+            part = replace(used, time=used.time[600:], force=used.force[600:], moment=used.moment[600:])
+            by_noise.append((off < 2 * found.sd_mm).mean())
+            inside.append((off < 2 * np.hypot(found.sd_mm, model.own_error(part, DOME))).mean())
+    assert np.mean(by_noise) < 0.9 < 0.93 < np.mean(inside)
+
+
 def test_without_noise_and_with_exact_marks_it_is_the_sensors_own_inverse() -> None:
     scene = TouchScene(place_mm=0.0, noise=SensorNoise(1e-5, 1e-4), crosstalk=0.01, turn_deg=1.0)
     trained = learn_touches(*simulate_touches(10, seed=5, scene=scene), DOME)
@@ -102,11 +118,14 @@ def test_a_model_comes_back_as_it_was_and_others_are_refused(trained: Trained, t
     back, simulated = load_touches(tmp_path / "a.npz")
     assert simulated and back.surface == "a dome of 20 mm" and back.noise == trained.model.noise
     np.testing.assert_array_equal(back.matrix, trained.model.matrix)
-    save_model(tmp_path / "b.npz", kind="force contact", facts={}, arrays={"matrix": np.eye(6), "noise": np.ones(2)})
+    np.testing.assert_array_equal(back.spread, trained.model.spread)
+    save_model(tmp_path / "b.npz", kind="force contact", facts={}, arrays={"matrix": np.eye(6), "spread": np.eye(36), "noise": np.ones(2)})
     with pytest.raises(InputError, match="missing or wrong"):
         load_touches(tmp_path / "b.npz")
     facts = {"surface": "a dome of 20 mm", "simulated": False}
-    save_model(tmp_path / "c.npz", kind="force contact", facts=facts, arrays={"matrix": -np.eye(6)[:5], "noise": np.ones(2)})
+    save_model(
+        tmp_path / "c.npz", kind="force contact", facts=facts, arrays={"matrix": -np.eye(6)[:5], "spread": np.eye(36), "noise": np.ones(2)}
+    )
     with pytest.raises(InputError, match="its matrix is none"):
         load_touches(tmp_path / "c.npz")
     save_model(tmp_path / "d.npz", kind="force hand", facts={}, arrays={})
