@@ -5,6 +5,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 
@@ -110,7 +111,11 @@ def test_whatever_ends_it_the_work_is_there_at_the_next_start(tmp_path, display,
     environment = os.environ | {"SKINFAB_STATE": str(tmp_path / "state"), "PYTHONPATH": str(ROOT), "DISPLAY": display}
     command = [sys.executable, str(tmp_path / "work.py"), str(ROOT / "meshes" / "cube.obj"), asking]
     process = subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-    assert process.stdout.readline() == "kept\n", process.stderr.read()
+    impatience = threading.Timer(120, process.kill)  # a window that never says so ends as a failure
+    impatience.start()
+    said = process.stdout.readline()
+    impatience.cancel()
+    assert said == "kept\n", ended(process)
     began = time.monotonic()
     process.send_signal(number)
     status, _, err = ended(process)
