@@ -112,7 +112,8 @@ def _cut_mesh(args: argparse.Namespace, watch: Stopwatch, progress: Progress) ->
     with watch.phase("segment"):
         seams = steps.cut(args, loaded, flattened.mesh, used, part_of(progress, 0.05, 0.6))
     with watch.phase("flatten"):
-        skin, distortions = steps.to_skin(loaded, flattened, seams, used=used, max_distortion=steps.bound_of(args), seed=args.seed)
+        bound = steps.bound_of(args)
+        skin, distortions = steps.to_skin(loaded, flattened, seams, used=used, max_distortion=bound, max_p99=args.max_p99, seed=args.seed)
     remarks = (*flattened.remarks, *many_pieces(skin, wrapped=args.wrap is not None))
     steps.say(remarks[len(flattened.remarks) :])
     return skin, distortions, used, (*loaded.notes, *remarks)

@@ -68,7 +68,8 @@ def _mesh(args: argparse.Namespace) -> tuple[Skin, Sequence[Distortion]]:
     used = steps.profiles(args.printer, args.material)
     with terminal_progress(quiet=args.json) as progress:
         seams = steps.cut(args, loaded, flattened.mesh, used, progress)
-    return steps.to_skin(loaded, flattened, seams, used=used, max_distortion=steps.bound_of(args), seed=args.seed)
+    bound = steps.bound_of(args)
+    return steps.to_skin(loaded, flattened, seams, used=used, max_distortion=bound, max_p99=args.max_p99, seed=args.seed)
 
 
 def _document(args: argparse.Namespace) -> tuple[Skin, Sequence[Distortion]]:
@@ -81,7 +82,7 @@ def _document(args: argparse.Namespace) -> tuple[Skin, Sequence[Distortion]]:
     skin = load_skin(args.mesh)
     used = steps.profiles(args.printer or skin.printer, args.material or skin.material)
     skin = replace(skin, printer=used.printer_name, material=used.material_name, seed=args.seed or skin.seed)
-    within = steps.limits(steps.bound_of(args, skin), used)
+    within = steps.limits(steps.bound_of(args, skin), used, args.max_p99)
     roomy, _ = with_room_for_nozzle(used.material, used.printer)
     with terminal_progress(quiet=args.json) as progress:
         found = auto_cut(skin, within, neck=used.material.neck, material=roomy, aim=args.pieces, progress=progress)

@@ -110,6 +110,7 @@ def add_cut_options(p: argparse.ArgumentParser) -> None:
         help="of automatic seams: as few pieces, with as little seam, as the bound allows, or simple ones well within it (default: usual)",
     )
     p.add_argument("--max-distortion", type=bound, metavar="D", help="mean d of a piece at most (default 4.05; 4 is perfect)")
+    p.add_argument("--max-p99", type=bound, metavar="D", help="d that 99 %% of a piece's area keep to (default: not asked for)")
     p.add_argument("--printer", metavar="NAME|FILE", help="printer profile, whose bed the pieces must fit")
     p.add_argument("--material", metavar="NAME|FILE.toml", help="material profile: ink, silicone, mould (see skinfab strips)")
     p.add_argument("--seed", type=seed, default=0, help="kept in the document; the same seed gives the same result")
@@ -199,11 +200,12 @@ def bound_of(args: argparse.Namespace, skin: Skin | None = None) -> float:
     return Document.max_distortion if skin is None else skin.max_distortion
 
 
-def limits(max_distortion: float, used: Used) -> Limits:
-    """Pieces within the distortion bound whose moulds fit the bed."""
+def limits(max_distortion: float, used: Used, max_p99: float | None = None) -> Limits:
+    """Pieces within the distortion bounds whose moulds fit the bed."""
     from gcode.used import limits_for
 
-    return limits_for(used, max_distortion)
+    within = limits_for(used, max_distortion)
+    return within if max_p99 is None else replace(within, p99=max_p99)
 
 
 def surface(args: argparse.Namespace, mesh: Mesh, *, usual: float = 0.0) -> Surface:
@@ -214,14 +216,14 @@ def surface(args: argparse.Namespace, mesh: Mesh, *, usual: float = 0.0) -> Surf
 
 
 def to_skin(
-    loaded: Loaded, flattened: Surface, found: Seams, *, used: Used, max_distortion: float, seed: int
+    loaded: Loaded, flattened: Surface, found: Seams, *, used: Used, max_distortion: float, seed: int, max_p99: float | None = None
 ) -> tuple[Skin, list[Distortion]]:
     """The document of a cut mesh without sensors, and each piece's distortion in its order."""
     from skinfab.seams import document
     from skinfab.skin import Source
 
     source = Source(loaded.file, loaded.sha256, loaded.units, loaded.scale)
-    within = limits(max_distortion, used)
+    within = limits(max_distortion, used, max_p99)
     return document.to_skin(
         loaded.mesh, source, flattened, found, within, printer=used.printer_name, material=used.material_name, seed=seed
     )
@@ -231,7 +233,7 @@ def cut(args: argparse.Namespace, loaded: Loaded, mesh: Mesh, used: Used, progre
     """Automatic seams of the surface that is flattened, or those that ``--cuts`` gives."""
     from skinfab.seams.auto import find_seams
 
-    within = limits(bound_of(args), used)
+    within = limits(bound_of(args), used, args.max_p99)
     if args.cuts is not None:
         return _by_hand(args, loaded, mesh, within)
     return find_seams(

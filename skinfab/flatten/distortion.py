@@ -6,6 +6,7 @@ the symmetric Dirichlet energy s1^2 + s2^2 + s1^-2 + s2^-2; 4 is perfect.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -145,9 +146,7 @@ def measure(V: FloatArray, F: NDArray[np.int64], UV: FloatArray, *, topology: To
         d = parts[0] * parts[1]
     d = np.where(real, np.where(np.isfinite(d), d, np.inf), 4.0)
     angle, swelling = (np.where(real, np.where(np.isfinite(part), part, np.inf), 2.0) for part in parts)
-    order = np.argsort(d)
-    share = np.cumsum(area[order]) / area.sum()
-    p95, p99 = (float(d[order[min(int(np.searchsorted(share, q)), len(d) - 1)]]) for q in (0.95, 0.99))
+    p95, p99 = quantiles(d, area, (0.95, 0.99))
     return Distortion(
         d=d,
         angle=angle,
@@ -159,6 +158,13 @@ def measure(V: FloatArray, F: NDArray[np.int64], UV: FloatArray, *, topology: To
         flipped=int((~(product > 0) & real).sum()),
         overlap_mm2=overlap_area(F, UV, topology=topology),
     )
+
+
+def quantiles(values: FloatArray, areas: FloatArray, shares: Sequence[float]) -> list[float]:
+    """The least values that these shares of the area keep to."""
+    order = np.argsort(values)
+    share = np.cumsum(areas[order]) / areas.sum()
+    return [float(values[order[min(int(np.searchsorted(share, q)), len(values) - 1)]]) for q in shares]
 
 
 def mean_over(values: FloatArray, areas: FloatArray) -> float:

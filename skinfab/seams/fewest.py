@@ -217,9 +217,11 @@ def _grown_on(level: _Level, cut: BoolArray, limits: Limits, report: Callable[[f
         if not piece.is_disk:
             continue
         bounds = cut.copy()
-        grown = grow_darts(mesh, lay_out(mesh, piece), limits.mean, level.weight, cut=bounds, forbidden=level.forbidden)
+        grown = grow_darts(mesh, lay_out(mesh, piece), limits.mean, level.weight, cut=bounds, forbidden=level.forbidden, p99=limits.p99)
         if grown.mean <= limits.mean and not grown.good:
-            grown = grow_darts(mesh, laid_apart(mesh, grown), limits.mean, level.weight, cut=bounds, forbidden=level.forbidden)
+            grown = grow_darts(
+                mesh, laid_apart(mesh, grown), limits.mean, level.weight, cut=bounds, forbidden=level.forbidden, p99=limits.p99
+            )
         for dart in grown.darts:
             cut[dart.edges] = True
         pieces.append((grown.piece, verdict_of(mesh, grown.piece, grown.UV, limits)))

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from skinfab.flatten.bijective import flatten_bijective, keep_apart
 from skinfab.flatten.disk import flatten_isometric
-from skinfab.flatten.distortion import measure
+from skinfab.flatten.distortion import measure, quantiles
 from skinfab.flatten.isometric import Apart, IsometricSolver
 from skinfab.flatten.overlap import overlap_area
 from skinfab.mesh.model import Mesh
@@ -125,16 +125,17 @@ def grow_darts(
     *,
     cut: BoolArray,
     forbidden: BoolArray,
+    p99: float = np.inf,
     rival: Grown | None = None,
 ) -> Grown:
-    """Cut darts until the mean d is at most `bound`.
+    """Cut darts until the mean d is at most `bound`, and 99 % of the area keep to `p99`.
 
     Parameters
     ----------
     mesh : Mesh
     start : Grown
         Laid out freely: goes on so. Laid out apart: keeps its boundary apart.
-    bound : float
+    bound, p99 : float
     weight : (e,) float
         Cost of cutting each mesh edge.
     cut : (e,) bool
@@ -153,8 +154,9 @@ def grow_darts(
     for dart in start.darts:
         cut[dart.edges] = True
     solver = IsometricSolver(mesh.V[now.piece.vertices], now.piece.F)
-    while now.mean > bound and len(now.darts) < _MOST_DARTS:
-        way = _best_dart(mesh, now, solver, bound, weight, forbidden)
+    while (now.mean > bound or _exceeds(solver, now.UV, p99)) and len(now.darts) < _MOST_DARTS:
+        # Hot spots have no say in the mean: once it keeps to its bound, the dart that gains most of what is above 4.
+        way = _best_dart(mesh, now, solver, bound if now.mean > bound else 4.0, weight, forbidden)
         if way is None:
             return now
         edges = mesh_edges(mesh, now.piece, way.edges)
@@ -166,7 +168,7 @@ def grow_darts(
             return now
         now, solver = _opened(mesh, now, parts[0], way, edges)
     flat = now.apart or overlap_area(now.piece.F, now.UV, topology=now.piece.topology) == 0
-    return replace(now, good=bool(now.mean <= bound and flat))
+    return replace(now, good=bool(now.mean <= bound and not _exceeds(solver, now.UV, p99) and flat))
 
 
 def laid_apart(mesh: Mesh, grown: Grown) -> Grown:
@@ -248,6 +250,11 @@ def _parted(solver: IsometricSolver, piece: OpenPiece, uv: FloatArray, now: Grow
         if solver.best_scale(moved)[1] > 0 and overlap_area(piece.F, moved, topology=piece.topology) == 0:
             return moved
     return None
+
+
+def _exceeds(solver: IsometricSolver, UV: FloatArray, p99: float) -> bool:
+    """Whether more than a hundredth of the area is distorted by more."""
+    return p99 < np.inf and quantiles(_d_of(solver, UV), solver.weight, (0.99,))[0] > p99
 
 
 def _d_of(solver: IsometricSolver, UV: FloatArray) -> FloatArray:

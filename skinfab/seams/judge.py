@@ -28,6 +28,8 @@ class Limits:
     ----------
     mean : float
         Its mean d at most.
+    p99 : float
+        What 99 % of its area keep to, at most; infinite: not asked for.
     size : (float, float), mm
         Width and height of the bed, less the mould's walls; either way round.
     fits : callable, optional
@@ -35,6 +37,7 @@ class Limits:
     """
 
     mean: float = 4.05
+    p99: float = np.inf
     size: tuple[float, float] = (np.inf, np.inf)
     fits: Callable[[NDArray[np.float64]], bool] | None = None
 
@@ -80,6 +83,13 @@ def judge(mesh: Mesh, piece: OpenPiece, limits: Limits, *, tolerance: float = NE
     return first if apart.distortion.mean > most else apart
 
 
+def excess(distortion: Distortion, limits: Limits) -> str:
+    """In words, which bound on d a piece that is too distorted does not keep to."""
+    if distortion.mean <= limits.mean and not distortion.p99 <= limits.p99:
+        return f"a p99 of d of {distortion.p99:.3f}, over the bound {limits.p99:g}"
+    return f"mean d {distortion.mean:.3f}, over the bound {limits.mean:g}"
+
+
 def verdict_of(mesh: Mesh, piece: OpenPiece, uv: NDArray[np.float64], limits: Limits) -> Verdict:
     """Hold a flattening of `piece`, (p, 2) mm in any frame, against `limits`."""
     uv = orient(uv)
@@ -90,7 +100,7 @@ def verdict_of(mesh: Mesh, piece: OpenPiece, uv: NDArray[np.float64], limits: Li
     return Verdict(
         UV=uv,
         distortion=distortion,
-        too_distorted=not distortion.mean <= limits.mean or distortion.flipped > 0,
+        too_distorted=not distortion.mean <= limits.mean or not distortion.p99 <= limits.p99 or distortion.flipped > 0,
         overlaps=not distortion.overlap_mm2 <= OVERLAP_FRACTION * area,
         # What is far from flat yet has no size yet, but more area than the bed has will not fit in any case.
         too_large=bool(

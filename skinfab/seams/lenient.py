@@ -19,7 +19,7 @@ from skinfab.seams.auto import Seams
 from skinfab.seams.cones import flatten_with_cones
 from skinfab.seams.cut import OpenPiece, mesh_edges
 from skinfab.seams.finish import finish
-from skinfab.seams.judge import Limits, Verdict, judge, verdict_of
+from skinfab.seams.judge import Limits, Verdict, excess, judge, verdict_of
 
 BoolArray = NDArray[np.bool_]
 
@@ -139,7 +139,7 @@ def fault_of(verdict: Verdict, limits: Limits) -> str:
     if d.flipped:
         return f"has {d.flipped} triangles turned over when laid flat: choose method auto, or cut it further"
     if verdict.too_distorted:
-        return f"has mean d {d.mean:.3f}, over the bound {limits.mean:g}: cut it further, or raise the bound"
+        return f"has {excess(d, limits)}: cut it further, or raise the bound"
     if verdict.overlaps:
         return f"covers {d.overlap_mm2:.3g} mm^2 twice when laid flat: cut it further, or choose method bijective"
     if verdict.too_large:

@@ -23,7 +23,7 @@ from skinfab.mesh.model import Mesh
 from skinfab.seams.auto import Seams
 from skinfab.seams.cut import OpenPiece, open_pieces
 from skinfab.seams.graph import edge_graph, trace
-from skinfab.seams.judge import Limits, Verdict, judge
+from skinfab.seams.judge import Limits, Verdict, excess, judge
 from skinfab.seams.weights import seam_weights
 
 IntArray = NDArray[np.int64]
@@ -153,7 +153,8 @@ def _more(piece: OpenPiece) -> str:
 
 def _fault(verdict: Verdict, limits: Limits) -> str:
     if verdict.too_distorted:
-        return f"has mean d {verdict.distortion.mean:.3f}, over the bound {limits.mean:g} (raise --max-distortion to allow it)"
+        option = "--max-p99" if verdict.distortion.mean <= limits.mean else "--max-distortion"
+        return f"has {excess(verdict.distortion, limits)} (raise {option} to allow it)"
     if verdict.overlaps:
         return f"overlaps itself by {verdict.distortion.overlap_mm2:.3g} mm^2 when laid flat"
     w, h = verdict.UV.max(axis=0)

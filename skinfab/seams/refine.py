@@ -12,7 +12,7 @@ from skinfab.mesh.model import Mesh
 from skinfab.seams.cut import OpenPiece, mesh_edges, open_pieces
 from skinfab.seams.darts import grow_dart
 from skinfab.seams.disk import cut_to_disk
-from skinfab.seams.judge import Limits, Verdict, judge
+from skinfab.seams.judge import Limits, Verdict, excess, judge
 from skinfab.seams.split import farthest_faces, overlapping_faces, split
 from skinfab.tolerances import NEWTON_DECREASE
 
@@ -147,4 +147,4 @@ def _stuck(mesh: Mesh, piece: OpenPiece, verdict: Verdict | None, limits: Limits
             f"{where} alone is {w:.0f} x {h:.0f} mm and does not fit the bed ({W:.0f} x {H:.0f} mm); "
             "subdivide the mesh or choose a larger printer"
         )
-    return RefusedError(f"{where} alone has mean d {verdict.distortion.mean:.3f}, over the bound {limits.mean:g}; use --repair")
+    return RefusedError(f"{where} alone has {excess(verdict.distortion, limits)}; use --repair")

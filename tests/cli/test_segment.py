@@ -46,6 +46,15 @@ def test_fewest_pieces(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> No
     assert found[1]["seam_mm"] == pytest.approx(found[0]["seam_mm"])
 
 
+def test_hot_spots_are_bounded_on_request(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    target = str(tmp_path / "a.skin")
+    p99 = []
+    for more in ([], ["--max-p99", "4.05"]):
+        assert main(["segment", CUBE, "-o", target, "--pieces", "fewest", "--max-distortion", "4.2", "--json", *more]) == 0
+        p99.append(max(piece["distortion"]["p99"] for piece in json.loads(capsys.readouterr().out)["pieces"]))
+    assert p99[0] > 4.05 >= p99[1]
+
+
 def test_fewest_pieces_are_not_cut_by_hand(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["segment", CUBE, "-o", str(tmp_path / "cube.skin"), "--cuts", str(tmp_path / "cuts.txt"), "--pieces", "fewest"]) == 2
     assert "--pieces is for automatic seams" in capsys.readouterr().err

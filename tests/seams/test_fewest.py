@@ -58,6 +58,16 @@ def test_the_same_every_time(sphere: tuple[Mesh, Seams]) -> None:
     np.testing.assert_array_equal(seams.pieces[0][1].UV, again.pieces[0][1].UV)
 
 
+def test_hot_spots_are_cut_to_a_bound_of_their_own(sphere: tuple[Mesh, Seams]) -> None:
+    mesh, seams = sphere
+    ((_, free),) = seams.pieces
+    bound = 4 + 0.8 * (free.distortion.p99 - 4)
+    within = find_seams(mesh, replace(LIMITS, p99=bound), aim="fewest")
+    ((_, held),) = within.pieces
+    assert held.accepted and held.distortion.p99 <= bound
+    assert seam_length(mesh, within.cut) < 1.6 * seam_length(mesh, seams.cut)
+
+
 def test_a_fine_mesh_needs_no_more(sphere: tuple[Mesh, Seams]) -> None:
     """5120 triangles, its darts found on 1500."""
     fine = bumpy(4)

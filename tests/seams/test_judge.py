@@ -6,7 +6,7 @@ import shapes
 
 from skinfab.mesh.model import Mesh
 from skinfab.seams.cut import open_pieces
-from skinfab.seams.judge import Limits, judge
+from skinfab.seams.judge import Limits, excess, judge
 from skinfab.tolerances import OVERLAP_FRACTION
 
 
@@ -30,6 +30,17 @@ def test_distortion_is_held_against_the_bound() -> None:
     assert verdict(V, F, mean=mean + 1e-6).accepted
     bad = verdict(V, F, mean=mean - 1e-3)
     assert bad.too_distorted and not bad.accepted and not bad.overlaps
+
+
+def test_the_99_percent_are_held_against_their_own_bound_where_there_is_one() -> None:
+    V, F = shapes.cap(10, 1.2)
+    d = verdict(V, F, mean=9.0).distortion
+    assert d.mean < d.p99 < d.max
+    assert verdict(V, F, mean=9.0, p99=d.p99 + 1e-6).accepted
+    bad = verdict(V, F, mean=9.0, p99=d.p99 - 1e-3)
+    assert bad.too_distorted and not bad.accepted
+    assert excess(bad.distortion, Limits(mean=9.0, p99=4.01)) == f"a p99 of d of {d.p99:.3f}, over the bound 4.01"
+    assert excess(bad.distortion, Limits(mean=4.01, p99=4.01)) == f"mean d {d.mean:.3f}, over the bound 4.01"
 
 
 def test_overlap_is_seen_where_it_cannot_be_avoided() -> None:

@@ -138,6 +138,7 @@ def test_pieces_that_are_no_disks_are_named(surface, says: str) -> None:
     ("surface", "limits", "says"),
     [
         (shapes.cap(), Limits(), r"piece 1 \(600 faces\) has mean d 4\.\d+, over the bound 4.05"),
+        (shapes.cap(), Limits(mean=9, p99=4.1), r"has a p99 of d of 4\.\d+, over the bound 4.1 \(raise --max-p99 to allow it\)"),
         (shapes.helicoid(), Limits(mean=4.001), r"overlaps itself by 4\.52 mm\^2"),
         (
             shapes.grid(9, 1, lambda s, t: np.stack([90 * s, 5 * t, 0 * s], axis=1)),
@@ -145,7 +146,7 @@ def test_pieces_that_are_no_disks_are_named(surface, says: str) -> None:
             r"is 90 x 5 mm flat .* bed \(50 x 40 mm\)",
         ),
     ],
-    ids=["distorted", "overlapping", "large"],
+    ids=["distorted", "hot spots", "overlapping", "large"],
 )
 def test_pieces_that_break_a_limit_are_refused(surface, limits: Limits, says: str) -> None:
     mesh = Mesh(*surface)
