@@ -12,7 +12,7 @@ from skinfab.errors import InputError
 from skinfab.fingertip.array.certainty import of_line, of_points, of_spot
 from skinfab.fingertip.array.geometry import Geometry, tactel_columns
 from skinfab.fingertip.array.line_fit import Line, LineFinder
-from skinfab.fingertip.array.logs import PULLED_PART, REST_S, of_recording, require_rested, tactels
+from skinfab.fingertip.array.logs import PULLED_PART, REST_FRAMES, REST_S, RESTLESS, of_recording, require_rested, tactels
 from skinfab.fingertip.array.matched import ArrayModel, Contact, Matcher
 from skinfab.fingertip.array.peak import Peak, PeakFinder, highest
 from skinfab.fingertip.array.rest import Rest
@@ -23,11 +23,17 @@ from skinfab.readout.frame import Frame, Recording, Stream
 from skinfab.tolerances import LINE_RIVAL, MATCH_UNEXPLAINED
 
 FloatArray = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
 
 #: A frame is touched where a tactel reads more than so many standard deviations: one false one in half a million readings.
 SIGMAS = 5.0
 #: And is touched still where a force tells so many of it: its place is fitted with it, and noise alone has 64 places to try.
 FAINT_SIGMAS = 6.0
+#: What reads less than this part of the highest is not touched, and so is what lies so far from all that reads more, mm.
+FAINT_PART, FAR_MM = 0.1, 7.0
+#: Frames that no contact explains, and that read less than this force does, are a wrong rest if they stay so for so long, s; or, `True`, if
+#: they are pulled.
+NOTHING_N, WRONG_S = 0.3, {False: 10.0, True: 3.0}
 #: States whose places are not to be trusted, and make no events.
 UNSURE = ("past", "wide", "pulled")
 
@@ -103,9 +109,10 @@ class Analyser:
         self._peaks = PeakFinder(model.geometry, floor=floor)
         self._tracker = Tracker(model.geometry.finger_radius)
         self._floor, self._noise = floor, noise
-        self._touch = self._matcher.reading_of(TOUCH_N)
-        #: Whether nothing touched it in the last frame.
-        self.idle = True
+        #: What is read of a contact that begins.
+        self.touch = self._matcher.reading_of(TOUCH_N)
+        #: Whether nothing touched it in the last frame, and what the contacts found there are expected to read.
+        self.idle, self.predicted = True, np.zeros(model.geometry.shape)
 
     def frame(self, time: float, Z: FloatArray, *, saturated: int = 0) -> Reading:
         """Take the next frame's deflections, (rings, stripes)."""
@@ -117,13 +124,22 @@ class Analyser:
         if places:
             place = replace(places[0], force_n=sum(each.force_n for each in places))
         events = self._tracker.step(time, places, sure=sure)
-        self.idle = self._idle(Z)
+        self.idle, self.predicted = self._idle(Z), self._predicted(found)
         contacts = found.contacts if sure else ()
         return Reading(time, found.state, place, found.line, found.spot, contacts, self._peaks(Z), Z, saturated, tuple(events))
 
     def finish(self) -> tuple[Event, ...]:
         """What went on to the end."""
         return self._tracker.finish()
+
+    def _predicted(self, found: _Found) -> FloatArray:
+        if found.state in UNSURE:
+            return np.zeros(self._matcher.model.geometry.shape)
+        if found.line is not None:
+            return self._lines.predicted(found.line)
+        if found.spot is not None and found.contacts == (_contact(found.spot),):
+            return self._spots.predicted(found.spot)
+        return self._matcher.predicted(found.contacts)
 
     def _sd(self, Z: FloatArray, found: _Found) -> list[tuple[float, float]]:
         """How surely the place of each contact is told."""
@@ -136,7 +152,7 @@ class Analyser:
 
     def _pulled(self, Z: FloatArray) -> bool:
         low = -highest(-Z)
-        return -low > max(2 * self._floor, self._touch, PULLED_PART * max(highest(Z), 0.0))
+        return -low > max(2 * self._floor, self.touch, PULLED_PART * max(highest(Z), 0.0))
 
     def _found(self, Z: FloatArray) -> _Found:
         """The simplest that explains all of the frame."""
@@ -190,9 +206,30 @@ class Analyser:
         state = end if end != "point" else "patch" if spot.radius_mm > 0 else "point"
         return _Found(state, (_contact(spot),), spot=spot)
 
+    def untouched(self, Z: FloatArray) -> BoolArray:
+        """Tactels of a frame that lie far from all that differ from the others."""
+        from scipy.ndimage import maximum_filter
+
+        known = np.isfinite(Z)
+        # What touches makes tactels read more: the lowest quarter tells what the others read.
+        off = np.where(known, Z - np.quantile(Z[known], 0.25), 0.0) if known.any() else np.zeros(Z.shape)
+        busy = np.abs(off) > max(self._floor, FAINT_PART * highest(off))
+        g = self._matcher.model.geometry
+        reach = tuple(2 * math.ceil(FAR_MM / pitch - 0.25) + 1 for pitch in g.pitch)
+        near: BoolArray = maximum_filter(busy, size=reach, mode=("constant", "wrap"))
+        return known & ~near
+
+    def no_contact(self, reading: Reading) -> bool:
+        """Whether a frame reads something that no contact explains: less than at rest, or next to nothing here and there."""
+        return reading.state == "pulled" or (reading.state == "wide" and highest(reading.Z) < NOTHING_N / TOUCH_N * self.touch)
+
+    def let_go(self, time: float) -> tuple[Event, ...]:
+        """Nothing touches any more."""
+        return tuple(self._tracker.step(time, []))
+
     def _idle(self, Z: FloatArray) -> bool:
         """Whether nothing touches: not a tactel reads as much as what begins a contact."""
-        return not self._tracker.touched and bool((~(np.abs(Z) >= max(self._floor, self._touch))).all())
+        return not self._tracker.touched and bool((~(np.abs(Z) >= max(self._floor, self.touch))).all())
 
 
 @dataclass(frozen=True, eq=False)
@@ -241,6 +278,8 @@ class ArrayWatch:
         self._analyser: Analyser | None = None
         self._rest: Rest | None = None
         self._said: tuple[str, ...] = ()
+        # Frames of which nothing makes sense: their times and voltages.
+        self._wrong: list[tuple[float, FloatArray]] = []
         self.noise = math.nan
 
     @property
@@ -269,9 +308,37 @@ class ArrayWatch:
         valid, saturated = frame.valid[self._columns], frame.saturated[self._columns]
         time = frame.device_time - self._resting[0].device_time
         volts = self._rest.alive(time, np.where(valid & ~saturated, frame.values[self._columns], np.nan))
+        self._rest.step_back(volts, least=self._analyser.touch)
         reading = self._analyser.frame(time, deflection(volts, self._rest.volts), saturated=int((valid & saturated).sum()))
-        self._rest.follow(time, volts, idle=self._analyser.idle)
-        return reading
+        if self._analyser.idle:
+            self._rest.follow(time, volts, idle=True)
+        else:
+            # Far from a contact rubber swells by what 0.2 % of its highest reading come to: that is not wandering.
+            explained = volts * (1 - self._analyser.predicted)
+            self._rest.follow(time, explained, idle=False, untouched=self._analyser.untouched(reading.Z))
+        return self._renewed(reading, volts)
+
+    def _renewed(self, reading: Reading, volts: FloatArray) -> Reading:
+        """Where for long nothing explains what is read, it is the rest that is wrong: what is read now is taken for it."""
+        wrong = self._analyser is not None and self._analyser.no_contact(reading)
+        self._wrong = [*self._wrong, (reading.time, volts)] if wrong else []
+        if self._analyser is None or self._rest is None or not wrong:
+            return reading
+        for_s = WRONG_S[reading.state == "pulled"]
+        last = np.array([each for time, each in self._wrong if reading.time - time <= REST_S + 1e-9])
+        if reading.time - self._wrong[0][0] < for_s or len(last) < REST_FRAMES:
+            return reading
+        off = last / self._rest.volts
+        if not np.nanmax(np.nanstd(np.where(np.isfinite(off), off, 1.0), axis=0)) <= RESTLESS:
+            return reading
+        self._rest.renew(np.median(last, axis=0))
+        self._wrong = []
+        self._said = (
+            *self._said,
+            f"{self.stream.name}: what was read at {reading.time:.1f} s was taken for rest, as no contact explained it for {for_s:g} s; "
+            "the array was touched when it was thought at rest, or warmed up unevenly",
+        )
+        return replace(reading, events=(*reading.events, *self._analyser.let_go(reading.time)))
 
     def _begin(self) -> tuple[Rest, Analyser]:
         rest = of_recording(Recording.of_frames(self.stream, self._resting), name=self.stream.name)
@@ -281,7 +348,7 @@ class ArrayWatch:
     def finish(self) -> tuple[Event, ...]:
         """What went on to the end; the next frame begins a new rest."""
         events = self._analyser.finish() if self._analyser is not None else ()
-        self._analyser, self._resting = None, []
+        self._analyser, self._resting, self._wrong = None, [], []
         return events
 
 
@@ -308,7 +375,10 @@ def read_all(recording: Recording, model: ArrayModel) -> tuple[tuple[Reading, ..
     """
     watch = ArrayWatch(recording.stream, model)
     readings = [made for frame in recording if (made := watch.step(frame)) is not None]
-    require_rested([reading.Z for reading in readings if reading.state == "pulled"], recording.stream.name)
+    pulled = [k for k, reading in enumerate(readings) if reading.state == "pulled"]
+    if not any(reading.contacts for reading in readings[: min(pulled, default=0)]):
+        # From the first thing that happened on: it was no rest that was measured.
+        require_rested([readings[k].Z for k in pulled], recording.stream.name)
     if not readings:
         raise InputError(
             f"{recording.stream.name} ends within its first {REST_S:g} s, in which the array's rest is measured; record longer"
