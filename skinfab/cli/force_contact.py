@@ -45,6 +45,7 @@ def add_parsers(topics: Mapping[str, argparse._SubParsersAction[argparse.Argumen
     p = topics["simulate"].add_parser("contact", help="grasps that slide, let go and roll, and the times when they do")
     p.add_argument("--grasps", metavar="N", type=repeats, default=6, help="logs, a grasp each (default: 6)")
     p.add_argument("--touches", metavar="N", type=repeats, help="instead of grasps: logs of a touch each at known places, for train")
+    p.add_argument("--crooked", action="store_true", help="of grasps: by the sensor that --touches of this seed are read by, which is off")
     p.add_argument("--seed", type=steps.seed, default=0, help="of all chance (default: 0)")
     add_output(p, "a log a grasp, and truth.csv; or a log a touch, and places.csv")
     finish(p, simulate)
@@ -102,6 +103,10 @@ def simulate(args: argparse.Namespace) -> int:
     from skinfab.staging import staged_folder
 
     made = [grasp_log(seed=args.seed + k) for k in range(args.grasps)]
+    if args.crooked:
+        from skinfab.fingertip.force.touch_simulator import read_crooked
+
+        made = [(read_crooked(log, seed=args.seed), events) for log, events in made]
     names = [f"{log.name}.csv" for log, _ in made]
     truth = {name: events for name, (_, events) in zip(names, made, strict=True)}
     with staged_folder(args.output) as folder:

@@ -249,7 +249,7 @@ def _line(fact: Mapping[str, Any]) -> str:
     if fact["sure"] and fact["grasps"] < fact["given"]:
         many = f"sure after {fact['grasps']} of {fact['given']} grasps"
     if fact["shape"] == NONE:
-        said = f"none of these shapes, by {many}; look at the units (mm, rad, N, N mm), or the object is another one"
+        said = f"none of these shapes, by {many}; look at the units (mm, rad, N, N mm), or it is another one or smaller than learned from"
         return f"{fact['log']}, object {fact['object']}{made}: {said}"
     if not fact["sure"]:
         return (

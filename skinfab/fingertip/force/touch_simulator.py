@@ -8,7 +8,7 @@ stylus that slides, hysteresis. Which of these defects does what to the error: d
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -71,6 +71,19 @@ def defects(scene: TouchScene, rng: np.random.Generator) -> FloatArray:
     scale = np.array([1.0] * 3 + [RADIUS_MM] * 3)
     mixed: FloatArray = np.eye(6) + scene.crosstalk * rng.standard_normal((6, 6)) * np.outer(scale, 1 / scale)
     return mixed @ out
+
+
+def read_crooked(log: WrenchLog, *, seed: int | Sequence[int] = 0, scene: TouchScene | None = None) -> WrenchLog:
+    """What a straight sensor reads, as the sensor of `simulate_touches` of this seed would; the noise is turned and mixed with the rest.
+
+    Examples
+    --------
+    >>> straight = WrenchLog("a", np.arange(2.0), np.ones((2, 3)), np.zeros((2, 3)), simulated=True)
+    >>> bool(np.abs(read_crooked(straight, seed=1).moment).max() > 0.5)
+    True
+    """
+    wrench = np.hstack([log.force, log.moment]) @ defects(scene or TouchScene(), np.random.default_rng(seed)).T
+    return replace(log, force=np.ascontiguousarray(wrench[:, :3]), moment=np.ascontiguousarray(wrench[:, 3:]))
 
 
 def simulate_touches(

@@ -9,9 +9,10 @@ import pytest
 from skinfab.errors import InputError, RefusedError
 from skinfab.fingertip.force.contact import Hemisphere, locate
 from skinfab.fingertip.force.contact_mesh import TipMesh
+from skinfab.fingertip.force.motion_simulator import grasp_log
 from skinfab.fingertip.force.tare import tared
 from skinfab.fingertip.force.touch_model import Trained, learn_touches, load_touches, named, read_places, save_touches
-from skinfab.fingertip.force.touch_simulator import TouchScene, defects, simulate_touches
+from skinfab.fingertip.force.touch_simulator import TouchScene, defects, read_crooked, simulate_touches
 from skinfab.fingertip.force.wrench import SensorNoise
 from skinfab.fingertip.saved import save_model
 from skinfab.mesh.model import Mesh
@@ -36,6 +37,14 @@ def test_a_crooked_sensor_finds_places_that_it_was_not_taught(trained: Trained) 
             found = locate(used.force[400:], used.moment[400:])
             off.append(np.median(np.linalg.norm(found.point - true[each.name], axis=1)))
         assert np.median(off) < bound if bound else np.median(off) > 1.0
+
+
+def test_a_grasp_can_be_read_by_the_sensor_that_was_touched(trained: Trained) -> None:
+    straight, _ = grasp_log(seed=3, episodes=1)
+    crooked = tared(read_crooked(straight, seed=3), seconds=0.9)
+    mended = trained.model.corrected(crooked)
+    as_read, learned = (locate(log.force, log.moment, noise=trained.model.noise) for log in (crooked, mended))
+    assert as_read.twisted.sum() > 20 > 5 > learned.twisted.sum()
 
 
 def test_what_is_stated_of_a_point_holds_the_matrixs_own_error() -> None:
