@@ -180,7 +180,9 @@ def _facts(readings: Sequence[Reading], watch: ArrayWatch, facts: dict[str, Any]
         ("pulled", "read less than at rest: the array was touched in the first second, or its voltage falls when it is pressed"),
     ):
         if states[state]:
-            notes.append(f"{states[state]} of {len(readings)} frames {words}; their places are not to be trusted and make no events")
+            notes.append(
+                f"{states[state]} of {len(readings)} frames {words}; their places are not to be trusted, and nothing slips or rolls there"
+            )
     if full := sum(reading.saturated > 0 for reading in readings):
         notes.append(f"in {full} frames tactels are at the end of their range; they were left out")
     return {

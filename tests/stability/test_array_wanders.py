@@ -8,6 +8,7 @@ import pytest
 
 from skinfab.errors import InputError
 from skinfab.fingertip.array.geometry import Geometry
+from skinfab.fingertip.array.layer import LayerDevice
 from skinfab.fingertip.array.matched import ArrayModel
 from skinfab.fingertip.array.simulator import Skin
 from skinfab.fingertip.array.watch import ArrayWatch, Reading, read_all
@@ -81,3 +82,15 @@ def test_a_log_that_was_read_before_is_not_refused() -> None:
     readings, watch = read_all(recording, MODEL)
     assert [event.kind for reading in readings for event in reading.events] == ["touch", "lift", "touch"]
     assert "taken for rest" in watch.notes[0]
+
+
+def test_a_field_that_is_not_known_touches_still() -> None:
+    """Most frames of presses on another skin are wide, which told nothing at all: their places are not known, that they touch is."""
+    skin = LayerDevice(seed=3).skin
+    frames = [NONE] * 17
+    for axial, angle in ((6.0, 0.5), (13.0, -2.0), (19.0, 2.5)):
+        Z = skin.pressed(1.0, axial_mm=axial, angle_rad=angle)
+        frames += [part * Z for part in (0.2, 0.4, 0.6, 0.8, *[1.0] * 6, 0.6, 0.2)] + [NONE] * 5
+    made, events, _ = watched(logged(frames))
+    assert sum(reading.state == "wide" for reading in made) > 15
+    assert [kind for kind, _ in events] == ["touch", "lift"] * 3

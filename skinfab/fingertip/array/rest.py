@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
-#: Time constants of following what all tactels do, and each, s; by how much a second each tactel is followed at most beside what all do, as a part of the gap: what
-#: 0.4 N a minute read, so that a press which grows faster is told; and over how long each one's own speed is measured, s.
+#: Time constants of following what all tactels do, and each, s; by how much a second each is followed at most beside what all do, as a
+#: part of the gap: what 0.4 N a minute read, so that a press which grows faster is told; over how long each one's speed is measured, s.
 COMMON_S, FOLLOW_S, OWN_MOST, OWN_S = 0.5, 1.5, 3e-4, 10.0
 #: Under a contact without tactels to follow they go on for so long, s, at no more than this part a second; and as few will do, of all.
 FORGET_S, FASTEST, FEWEST = 20.0, 1e-3, 0.18

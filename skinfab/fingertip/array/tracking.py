@@ -167,6 +167,8 @@ class Tracker:
         #: The last frame that was sure, whether any was passed over since, and since when how many there are that are not followed yet.
         self._known, self._passed = -math.inf, False
         self._other: tuple[float, int] | None = None
+        #: Since when it is touched where is not known.
+        self._unsure = math.nan
         #: Of the last frame, and how long it took to come.
         self._time, self._every = math.nan, math.inf
 
@@ -191,13 +193,17 @@ class Tracker:
         return events
 
     def step(self, time: float, places: Sequence[Place], *, sure: bool = True) -> list[Event]:
-        """Take the next frame's contacts; events that are over with it. A frame that is not `sure` makes none."""
+        """Take the next frame's contacts; events that are over with it.
+
+        A frame that is not `sure` says at most that it is touched: after `SURE_S` of such frames, where nothing is followed, that is told.
+        """
         if time > self._time:
             self._every = time - self._time
         self._time = time
         if not sure:
             self._passed = True
-            return []
+            return self._touched_somewhere(time, places)
+        self._unsure = math.nan
         strong = [place for place in places if place.force_n >= TOUCH_N]
         weak = [place for place in places if LIFT_PART * TOUCH_N <= place.force_n < TOUCH_N]
         felt = strong + weak[: max(len(self._each) - len(strong), 0)]
@@ -213,6 +219,20 @@ class Tracker:
         anew = changed or (self._passed and time - self._known > SLIP_S + _ROUNDING_S)
         self._known, self._passed, self._other = time, False, None
         return self._take(felt, since, anew=anew)
+
+    def _touched_somewhere(self, time: float, places: Sequence[Place]) -> list[Event]:
+        """A touch of which the place is not known; it is where the first frame that is sure says."""
+        if self._each or not any(place.force_n >= TOUCH_N for place in places):
+            self._unsure = math.nan
+            return []
+        if math.isnan(self._unsure):
+            self._unsure = time
+        if time - self._unsure < SURE_S - _ROUNDING_S:
+            return []
+        since, self._unsure = self._unsure, math.nan
+        # How it goes on from this place is not seen.
+        self._known = -math.inf
+        return self._take(places[:1], since, anew=True)
 
     def _take(self, felt: Sequence[Place], since: float, *, anew: bool) -> list[Event]:
         """Go on with the places that are nearest to what is followed; begin and end the others."""

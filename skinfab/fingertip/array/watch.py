@@ -34,7 +34,7 @@ FAINT_PART, FAR_MM = 0.1, 7.0
 #: Frames that no contact explains, and that read less than this force does, are a wrong rest if they stay so for so long, s; or, `True`, if
 #: they are pulled.
 NOTHING_N, WRONG_S = 0.3, {False: 10.0, True: 3.0}
-#: States whose places are not to be trusted, and make no events.
+#: States whose places are not to be trusted: nothing slips or rolls in them, and pulled ones do not even touch.
 UNSURE = ("past", "wide", "pulled")
 
 
@@ -133,8 +133,6 @@ class Analyser:
         return self._tracker.finish()
 
     def _predicted(self, found: _Found) -> FloatArray:
-        if found.state in UNSURE:
-            return np.zeros(self._matcher.model.geometry.shape)
         if found.line is not None:
             return self._lines.predicted(found.line)
         if found.spot is not None and found.contacts == (_contact(found.spot),):

@@ -62,12 +62,13 @@ def test_two_contacts_of_which_one_slips() -> None:
     assert sorted((event.kind, event.number) for event in events[3:]) == [("lift", 1), ("lift", 2)]
 
 
-def test_what_is_not_understood_makes_no_events() -> None:
-    """A plate as wide as the finger: neither touch nor slip, and what stood before stands after it."""
+def test_what_is_not_understood_touches_but_does_not_move() -> None:
+    """A plate as wide as the finger: it touches and lifts, and what stood before stands after it."""
     plate = SKIN.plated(4.0, axial_mm=18.0, angle_rad=0.0, size_mm=18)
     readings, events, _ = read(logged([plate] * 20 + [NONE] * 5 + [A] * 10 + [plate] * 10 + [A] * 10 + [NONE] * 3))
     assert sum(reading.state == "wide" for reading in readings) >= 28
-    assert [event.kind for event in events] == ["touch", "lift"] and all(r.contacts == () for r in readings if r.state == "wide")
+    assert [(event.kind, round(event.start * 15) - 18) for event in events] == [("touch", 0), ("lift", 20), ("touch", 25), ("lift", 55)]
+    assert all(r.contacts == () for r in readings if r.state == "wide")
 
 
 def test_drift_is_followed() -> None:
