@@ -57,3 +57,10 @@ def test_full_cups_alone_are_no_empty_ones() -> None:
     full = [replace(stir(water_kg=0.1, seed=[k, 6]), name=f"f{k}.csv", label="") for k in range(10)]
     with pytest.raises(RefusedError, match=r"f0\.csv, f1\.csv, f2\.csv and \d more swing as the others cannot"):
         train_liquid(full, false_alarm=0.1)
+
+
+def test_a_swing_that_tells_no_pivot_has_none() -> None:
+    # Its point runs off until the matrices are singular, which ended the command.
+    log = stir(water_kg=0.0, scene=CupScene(tremble_mm_s2=48.88301277807142), seed=[353, 77])
+    found = stirred(log)
+    assert found.liquid and np.isnan(found.pivot).all()

@@ -189,7 +189,10 @@ def centre_of_gravity(force: ArrayLike, moment: ArrayLike, covariance: ArrayLike
         )
         residual = M - np.cross(t, F) - x[3:]
         gain = S @ to_residual.transpose(0, 2, 1)
-        weight = np.linalg.inv(to_residual @ gain)
+        try:
+            weight = np.linalg.inv(to_residual @ gain)
+        except np.linalg.LinAlgError:  # the point ran off so far that next to it nothing else counts
+            raise _undetermined(F) from None
         # The force as it most likely was: linearised about what was read, the point would be drawn towards the origin.
         likely = F - np.einsum("nij,njk,nk->ni", gain, weight, residual)[:, :3]
         design = np.concatenate([cross_matrices(likely), -np.broadcast_to(unit, (len(F), 3, 3))], axis=2)
