@@ -21,7 +21,7 @@ class Guess:
 
 
 def test_what_is_called_sure_and_wrong_is_counted() -> None:
-    sure, unsure = (depth_row(Guess(c), Fingertip(), (1.0, 2.0), 1.5, 100) for c in (0.9, 0.4))  # type: ignore[arg-type]
+    sure, unsure = (depth_row(Guess(c), Fingertip(), (1.0, 2.0), 1.5, 100) for c in (0.9, 0.25))  # type: ignore[arg-type]
     assert sure.sure == 1 and sure.sure_wrong == sure.wrong > 0.6 and 70 < sure.angle_deg < 110
     assert unsure == replace(sure, sure=0.0, sure_wrong=0.0, followed_wrong=0.0)
     assert sure.followed_wrong == sure.wrong  # what a follower takes as well

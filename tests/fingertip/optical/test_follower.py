@@ -117,7 +117,7 @@ def test_never_having_felt_an_edge_is_an_empty_trace() -> None:
 def test_a_pose_of_no_confidence_is_not_followed() -> None:
     plate = shapes()[-1].plate
     robot = Exact(plate, plate.start)
-    assert len(follow_pose(robot, lambda _: Edge(0.0, 0.0, confidence=0.45)).path) == 0
+    assert len(follow_pose(robot, lambda _: Edge(0.0, 0.0, confidence=0.25)).path) == 0
     assert len(follow_pose(robot, lambda _: Edge(0.0, 0.0, confidence=math.nan)).path) == 0
 
 
