@@ -14,7 +14,7 @@ from skinfab.rates import Rate
 
 def test_a_small_table_its_chart_and_its_sentence(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     # Ten minutes of empty cups are needed to learn one false alarm in a hundred; tests/fingertip/force/test_liquid_model.py does.
-    learned = Trained(LiquidModel(1e-8, 0.01, 6.0, 200.0, 100), Rate(0.0, 0.0, 0.1), 0.4, 0, 2)
+    learned = Trained(LiquidModel(1e-8, 0.01, 6.0, 200.0, 100), Rate(0.0, 0.0, 0.1), 0.4, 0, 2, (), "empty-1", 0.3, 0.2)
     monkeypatch.setattr(liquid, "train_liquid", lambda logs: learned)
     ends = {name: liquid.CONDITIONS[name] for name in ("still", "hand trembles much")}
     few = {"cups": 2, "empty": 8, "limited": 6, "learned": 1, "repeats": 1}

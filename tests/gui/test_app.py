@@ -2,7 +2,6 @@
 
 import gc
 import json
-import multiprocessing
 import subprocess
 import sys
 import time
@@ -32,16 +31,17 @@ def start(display, quick_workers, tmp_path, monkeypatch):
         person.wait(lambda: app.view2d.winfo_width() > 1)
         return person
 
-    there = workers()
-    open_window.workers = lambda: [p for p in workers() if p not in there]
+    open_window.workers = lambda: [p for app in opened for p in workers_of(app.runner) if p.is_alive()]
     yield open_window
     for app in opened:
         app.abandon()
     gc.collect()
 
 
-def workers():
-    return [p for p in multiprocessing.active_children() if p.name == "skinfab worker"]
+def workers_of(runner):
+    """Not those of the file's other window, which starts its spare one while any window is attended to."""
+    helpers = [runner._helper, *([runner._spare] if runner._spare is not None else [])]
+    return [*(helper.process for helper in helpers), *(process for process, _ in runner._retired)]
 
 
 def menu_of(person, name):
