@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import tkinter as tk
 from collections.abc import Callable
+from functools import partial
 from typing import Protocol
 
 #: How far one key press goes, pixels at 96 dots per inch: held down it crosses a view in three seconds, and passes no line unseen, which
@@ -79,12 +80,12 @@ class KeyCursor:
             canvas.bind_class(tag, f"<{key}>", lambda event: does())
 
         for key, (right, down) in _ARROWS.items():
-            bind(key, lambda r=right, d=down: self._move(r, d, round(STEP * self._dpi)))  # type: ignore[misc]
-            bind(f"Shift-{key}", lambda r=right, d=down: self._move(r, d, 1))  # type: ignore[misc]
-            bind(f"Control-{key}", lambda r=right, d=down: self._look(r, d))  # type: ignore[misc]
+            bind(key, partial(self._move, right, down, round(STEP * self._dpi)))
+            bind(f"Shift-{key}", partial(self._move, right, down, 1))
+            bind(f"Control-{key}", partial(self._look, right, down))
         for keys, factor in ((_LARGER, ZOOM), (_SMALLER, 1 / ZOOM)):
             for key in keys:
-                bind(f"Key-{key}", lambda f=factor: self._zoom(f))  # type: ignore[misc]
+                bind(f"Key-{key}", partial(self._zoom, factor))
         for key in ("Return", "KP_Enter"):
             bind(key, self._enter)
             bind(f"Shift-{key}", lambda: self._enter(shift=True))
