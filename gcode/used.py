@@ -54,7 +54,7 @@ def used_by(skin: Skin) -> Used:
 
 
 def limits_for(used: Used, max_distortion: float) -> Limits:
-    """Pieces within the distortion bound whose moulds fit the bed.
+    """Pieces within the distortion bound whose moulds fit the bed, without necks that would tear.
 
     Examples
     --------
@@ -66,7 +66,8 @@ def limits_for(used: Used, max_distortion: float) -> Limits:
     width, depth = used.printer.bed_size
     # A piece lies with its long side along x, so a bed that is deeper than wide has no use for the rest.
     size = (width - rim, min(width, depth) - rim)
-    return Limits(mean=max_distortion, size=size, fits=partial(mould_fits, mould=mould, bed=(width, depth)))
+    fits = partial(mould_fits, mould=mould, bed=(width, depth))
+    return Limits(mean=max_distortion, size=size, fits=fits, neck=used.material.neck)
 
 
 def limits_of(skin: Skin) -> Limits:

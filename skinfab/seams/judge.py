@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from skinfab.flatten.bijective import flatten_bijective
 from skinfab.flatten.disk import flatten_isometric
 from skinfab.flatten.distortion import Distortion, measure
+from skinfab.flatten.neck import Neck, find_neck
 from skinfab.flatten.orient import orient
 from skinfab.mesh.model import Mesh
 from skinfab.seams.cut import OpenPiece
@@ -34,12 +35,15 @@ class Limits:
         Width and height of the bed, less the mould's walls; either way round.
     fits : callable, optional
         Whether a piece with this outline, (b, 2) mm in the piece frame, fits the bed with what its mould has about it.
+    neck : float, mm
+        What hangs on less than this, laid flat, would tear off; 0: not asked for.
     """
 
     mean: float = 4.05
     p99: float = np.inf
     size: tuple[float, float] = (np.inf, np.inf)
     fits: Callable[[NDArray[np.float64]], bool] | None = None
+    neck: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,6 +56,8 @@ class Verdict:
         In the piece frame.
     distortion : Distortion
     too_distorted, overlaps, too_large : bool
+    neck : Neck, optional
+        One that is too narrow; not looked for in what is bad already.
     """
 
     UV: NDArray[np.float64]
@@ -59,10 +65,11 @@ class Verdict:
     too_distorted: bool
     overlaps: bool
     too_large: bool
+    neck: Neck | None = None
 
     @property
     def accepted(self) -> bool:
-        return not (self.too_distorted or self.overlaps or self.too_large)
+        return not (self.too_distorted or self.overlaps or self.too_large) and self.neck is None
 
 
 def judge(mesh: Mesh, piece: OpenPiece, limits: Limits, *, tolerance: float = NEWTON_DECREASE, untangle: bool = True) -> Verdict:
@@ -97,13 +104,16 @@ def verdict_of(mesh: Mesh, piece: OpenPiece, uv: NDArray[np.float64], limits: Li
     area = float(mesh.face_areas[piece.faces].sum())
     (w, h), (W, H) = np.ptp(uv, axis=0), sorted(limits.size, reverse=True)
     outline = uv[piece.topology.boundary_loops[0]]
+    too_distorted = not distortion.mean <= limits.mean or not distortion.p99 <= limits.p99 or distortion.flipped > 0
+    overlaps = not distortion.overlap_mm2 <= OVERLAP_FRACTION * area
     return Verdict(
         UV=uv,
         distortion=distortion,
-        too_distorted=not distortion.mean <= limits.mean or not distortion.p99 <= limits.p99 or distortion.flipped > 0,
-        overlaps=not distortion.overlap_mm2 <= OVERLAP_FRACTION * area,
+        too_distorted=too_distorted,
+        overlaps=overlaps,
         # What is far from flat yet has no size yet, but more area than the bed has will not fit in any case.
         too_large=bool(
             area > W * H or (distortion.mean <= limits.mean and (w > W or h > H or (limits.fits is not None and not limits.fits(outline))))
         ),
+        neck=None if too_distorted or overlaps else find_neck(piece.F, uv, limits.neck, topology=piece.topology),
     )

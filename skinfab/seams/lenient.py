@@ -147,6 +147,10 @@ def fault_of(verdict: Verdict, limits: Limits) -> str:
         lips = "" if w > max(W, H) or h > min(W, H) else " with the lips of its mould"
         size, bed = f"{w:.0f} x {h:.0f} mm", f"{W:.0f} x {H:.0f} mm"
         return f"is {size} flat and does not fit the bed ({bed}){lips}: cut it smaller, or choose a larger printer"
+    if verdict.neck is not None:
+        return (
+            f"has a neck {verdict.neck.width:.1f} mm wide, and {limits.neck:g} mm survive handling: cut it there, or glue a dart beside it"
+        )
     return ""
 
 

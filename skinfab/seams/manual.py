@@ -157,6 +157,8 @@ def _fault(verdict: Verdict, limits: Limits) -> str:
         return f"has {excess(verdict.distortion, limits)} (raise {option} to allow it)"
     if verdict.overlaps:
         return f"overlaps itself by {verdict.distortion.overlap_mm2:.3g} mm^2 when laid flat"
+    if verdict.neck is not None:
+        return f"has a neck {verdict.neck.width:.1f} mm wide when laid flat, and {limits.neck:g} mm of silicone survive handling"
     w, h = verdict.UV.max(axis=0)
     (W, H) = sorted(limits.size, reverse=True)
     lips = "" if w > W or h > H else " with the lips of its mould"

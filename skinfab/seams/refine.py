@@ -13,7 +13,7 @@ from skinfab.seams.cut import OpenPiece, mesh_edges, open_pieces
 from skinfab.seams.darts import grow_dart
 from skinfab.seams.disk import cut_to_disk
 from skinfab.seams.judge import Limits, Verdict, excess, judge
-from skinfab.seams.split import farthest_faces, overlapping_faces, split
+from skinfab.seams.split import farthest_faces, overlapping_faces, part, split
 from skinfab.tolerances import NEWTON_DECREASE
 
 BoolArray = NDArray[np.bool_]
@@ -115,6 +115,8 @@ def _mend(mesh: Mesh, piece: OpenPiece, verdict: Verdict, weight: NDArray[np.flo
         dart = grow_dart(mesh, piece, verdict.distortion.d, weight)
         if len(dart):
             return dart, darts + 1
+    if verdict.neck is not None and not verdict.too_large:
+        return part(mesh, piece, verdict.neck.side == 1, verdict.neck.side == 2, weight), 0
     if verdict.overlaps and not verdict.too_distorted:
         ends = overlapping_faces(mesh, piece, verdict.UV)
     else:
@@ -146,5 +148,10 @@ def _stuck(mesh: Mesh, piece: OpenPiece, verdict: Verdict | None, limits: Limits
         return RefusedError(
             f"{where} alone is {w:.0f} x {h:.0f} mm and does not fit the bed ({W:.0f} x {H:.0f} mm); "
             "subdivide the mesh or choose a larger printer"
+        )
+    if verdict.neck is not None:
+        return RefusedError(
+            f"{where} holds together what lies about it by a neck of {verdict.neck.width:.2g} mm ({limits.neck:g} mm survive handling); "
+            "subdivide the mesh or scale it up"
         )
     return RefusedError(f"{where} alone has {excess(verdict.distortion, limits)}; use --repair")

@@ -18,6 +18,7 @@ from skinfab.seams.graph import face_graph
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
+BoolArray = NDArray[np.bool_]
 
 #: The seam lies where distance to one place / distance to both is between this and one minus this.
 _CORE = 0.3
@@ -61,18 +62,22 @@ def split(mesh: Mesh, piece: OpenPiece, ends: tuple[int, int], weight: FloatArra
     weight : (e,) float
         Cost of cutting each mesh edge, > 0.
     """
-    topology, m = piece.topology, len(piece.F)
     steps = _centre_steps(piece, mesh.V[mesh.F[piece.faces]].mean(axis=1))
     a, b = dijkstra(steps, indices=list(ends))
     share = a / np.maximum(a + b, np.finfo(float).tiny)
-    core_a, core_b = share < _CORE, share > 1 - _CORE
+    return part(mesh, piece, share < _CORE, share > 1 - _CORE, weight)
+
+
+def part(mesh: Mesh, piece: OpenPiece, one: BoolArray, other: BoolArray, weight: FloatArray) -> IntArray:
+    """Mesh edges of the cheapest seam that parts two sets of a piece's faces, (k,) bool each; none where one is empty."""
+    topology, m = piece.topology, len(piece.F)
     inner = np.flatnonzero(topology.EF[:, 1] >= 0)
     f, g = topology.EF[inner].T
     cost = weight[mesh_edges(mesh, piece, inner)]
     # Integer capacities whose sum stays far inside 32 bits.
     capacity = np.maximum(np.round(cost / cost.sum() * 2**28), 1).astype(np.int32)
     source, sink, endless = m, m + 1, np.int32(2**30)
-    ka, kb = np.flatnonzero(core_a), np.flatnonzero(core_b)
+    ka, kb = np.flatnonzero(one), np.flatnonzero(other)
     rows = np.r_[f, g, np.full(len(ka), source), kb]
     columns = np.r_[g, f, ka, np.full(len(kb), sink)]
     data = np.r_[capacity, capacity, np.full(len(ka) + len(kb), endless)]

@@ -62,3 +62,11 @@ def test_overlap_is_avoided_where_the_bound_allows() -> None:
 def test_size_either_way_round(size, fits: bool) -> None:
     V, F = shapes.grid(10, 4, lambda s, t: np.stack([60 * s, 12 * t, 0 * s], axis=1))
     assert verdict(V, F, size=size).too_large is not fits
+
+
+def test_a_neck_is_refused_where_one_is_asked_about() -> None:
+    V, F = shapes.grid(60, 8, lambda s, t: np.stack([60 * s, (2 * t - 1) * (6 - 5 * np.exp(-(((s - 0.4) / 0.08) ** 2))), 0 * s], axis=1))
+    assert verdict(V, F).accepted
+    narrow = verdict(V, F, neck=4.0)
+    assert narrow.neck is not None and not narrow.accepted
+    assert narrow.neck.width == pytest.approx(2, abs=0.1)
