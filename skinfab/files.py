@@ -11,6 +11,9 @@ from pathlib import Path
 
 from skinfab.errors import InputError
 
+#: What is said of a full disk, so that what runs a command knows its fault from those of its input.
+DISK_FULL = "the disk is full"
+
 
 @contextmanager
 def atomic_path(target: str | Path) -> Iterator[Path]:
@@ -121,7 +124,7 @@ def require_apart(folder: str | Path, names: Sequence[str], inputs: Sequence[str
 def explain_os_error(fault: OSError, target: str | Path) -> str:
     """One sentence for a failed write: what, where, what to do."""
     if fault.errno == errno.ENOSPC:
-        return f"cannot write {target}: the disk is full; free some space and run again"
+        return f"cannot write {target}: {DISK_FULL}; free some space and run again"
     if fault.errno in (errno.ENOENT, errno.ENOTDIR):
         return f"cannot write {target}: {_missing(fault, Path(target))}"
     if fault.errno == errno.EISDIR:

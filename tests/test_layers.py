@@ -30,7 +30,7 @@ FLOORS = (
         *("mould", "mould_plan", "mould_taper", "strip_plate", "wiring", "wired", "wire_exits", "wire_ways", "wire_choice"),
         *("recipe", "work_order", "drawings", "report"),
     ),
-    ("cli", "bench", "__main__"),
+    ("cli", "bench", "batch", "__main__"),
 )
 FLOOR_OF = {room: k for k, rooms in enumerate(FLOORS) for room in rooms}
 

@@ -40,6 +40,7 @@ COMMANDS = {
     "force": "a six-axis force/torque fingertip: contacts, textures, centre of gravity, shapes",
     "array": "a capacitive array round a fingertip: places, forces, lines, slips",
     "optical": "a camera in a soft fingertip: edges, and following them all round",
+    "batch": "make for many meshes times many settings, on all cores or a cluster",
     "gui": "see the object, its flat skin and the sensors, and move them",
     "bench": "measure the project beside its peers: time against distortion",
 }

@@ -18,7 +18,8 @@ _MEDIA_TYPES = {".png": "image/png", ".svg": "image/svg+xml"}
 #: What may differ between two warnings of one kind: P3, C1, S2; 1.5, -3; and lists of them.
 _NAMES_AND_NUMBERS = re.compile(r"(?:\b[A-Z]\d+\b|[-+]?\d+(?:\.\d+)?)(?:(?:, | and )(?:\b[A-Z]\d+\b|[-+]?\d+(?:\.\d+)?))*")
 
-_STYLE = """
+#: Of every page.
+STYLE = """
 body { font: 15px/1.45 system-ui, sans-serif; color: #1a1a1a; max-width: 68rem; margin: 2rem auto; padding: 0 1rem; }
 h1 { font-size: 1.6rem; margin-bottom: .2rem; } h2 { font-size: 1.15rem; margin: 2rem 0 .5rem; border-bottom: 1px solid #ccc; }
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; } caption { text-align: left; color: #555; padding-bottom: .3rem; }
@@ -53,7 +54,7 @@ def write_html(report: Mapping[str, Any], path: str | Path, *, pictures: Mapping
     parts = [
         "<!doctype html>",
         '<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width">',
-        f"<title>Skin for {escape(name)}</title><style>{_STYLE}</style></head><body>",
+        f"<title>Skin for {escape(name)}</title><style>{STYLE}</style></head><body>",
         f"<h1>Skin for {escape(name)}</h1>",
         _summary(report),
         *_warnings(report["warnings"]),

@@ -1,0 +1,210 @@
+"""Do the jobs of a batch that are not done yet: whatever breaks off, the next run goes on from there."""
+
+from __future__ import annotations
+
+import fcntl
+import json
+import queue
+import secrets
+import shutil
+from collections import deque
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from skinfab import __version__
+from skinfab.batch.cluster import RESUMES, Slots, connected
+from skinfab.batch.job import ATTEMPTS, Home, Job
+from skinfab.batch.worker import end_jobs, runner_command, task
+from skinfab.errors import InputError
+from skinfab.files import atomic_write, explain_os_error
+from skinfab.progress import Progress, silent
+
+if TYPE_CHECKING:
+    from distributed import Client, Future
+
+#: One line for each job that is over, in the order in which they ended.
+LINES = "jobs.jsonl"
+
+#: The client looks up so often while no job ends, s.
+_LOOK_S = 0.5
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What is known of a batch.
+
+    Parameters
+    ----------
+    records : dict of str to dict
+        Of every job by its name.
+    before : int
+        How many of them were done before this run.
+    notes : tuple of str
+        What the user should know.
+    """
+
+    records: Mapping[str, Mapping[str, Any]]
+    before: int
+    notes: tuple[str, ...]
+
+
+def run_batch(
+    jobs: Sequence[Job],
+    folder: str | Path,
+    *,
+    workers: int,
+    scheduler: str | None = None,
+    runner: Sequence[str] | None = None,
+    progress: Progress = silent,
+) -> Outcome:
+    """Do what is not done yet.
+
+    Parameters
+    ----------
+    jobs : sequence of Job
+    folder : path
+        Each job's result is ``jobs/NAME`` in it, whole or not at all, with its record in ``job.json``.
+    workers : int
+        So many processes are started here; without meaning where `scheduler` is given.
+    scheduler : str, optional
+        Address of a Dask scheduler.
+    runner : sequence of str, optional
+        The program that does the jobs; default `runner_command`.
+    progress : Progress
+
+    Raises
+    ------
+    InputError
+        The folder cannot be written or another batch is at work in it, its records are damaged, or there is no cluster.
+    """
+    home = Home(Path(folder).resolve())
+    try:
+        home.folder.mkdir(parents=True, exist_ok=True)
+        with _alone(home.folder / ".lock"):
+            done, notes = _done(home, jobs)
+            atomic_write(home.folder / LINES, "".join(json.dumps(record) + "\n" for record in done.values()))
+            left = [job for job in jobs if job.name not in done]
+            records = dict(done)
+            if left:
+                with (home.folder / LINES).open("a", encoding="utf-8") as lines:
+                    for record in _do_all(left, home, min(workers, len(left)), scheduler, runner or runner_command(), progress):
+                        records[record["job"]] = record
+                        if record["status"] != "not run":
+                            lines.write(json.dumps(record) + "\n")
+                            lines.flush()
+            if not any(record["status"] == "not run" for record in records.values()):
+                shutil.rmtree(home.under_way, ignore_errors=True)
+    except OSError as fault:
+        raise InputError(explain_os_error(fault, home.folder)) from fault
+    return Outcome({job.name: records[job.name] for job in jobs}, len(done), tuple(notes))
+
+
+@contextmanager
+def _alone(path: Path) -> Iterator[None]:
+    """Two batches in one folder would not know of each other's jobs."""
+    with path.open("a") as file:
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise InputError(f"another batch is at work in {path.parent}; wait for its end, or give another -o") from None
+        yield
+
+
+def _done(home: Home, jobs: Sequence[Job]) -> tuple[dict[str, dict[str, Any]], list[str]]:
+    """Records of the jobs that are over; those that failed for a limit which has been raised since are forgotten."""
+    there = home.names()
+    done = {}
+    for job in jobs:
+        if job.name not in there or (record := home.record(job.name)) is None:
+            continue
+        if _raised(record, job):
+            shutil.rmtree(home.place(job.name))
+        else:
+            done[job.name] = record
+    others = len(there - {job.name for job in jobs})
+    notes = [f"{others} results in {home.folder / 'jobs'} are of other meshes or settings and were left alone"] if others else []
+    old = sum(record["skinfab"] != __version__ for record in done.values())
+    notes += [f"{old} of the results were made by another version of skinfab; remove their folders to have them made anew"] if old else []
+    return done, notes
+
+
+def _raised(record: Mapping[str, Any], job: Job) -> bool:
+    """Whether a job was ended for a limit that is a wider one now."""
+    was, now = {
+        "time": (record["limits"]["time_s"], job.time_s),
+        "memory": (record["limits"]["memory_mb"], job.memory_mb),
+    }.get(record["status"], (None, None))
+    return was is not None and (now is None or now > was)
+
+
+def _do_all(
+    jobs: Sequence[Job], home: Home, workers: int, scheduler: str | None, runner: Sequence[str], progress: Progress
+) -> Iterator[dict[str, Any]]:
+    """Records, as they come in."""
+    run = secrets.token_hex(4)
+    progress(0.0, f"starting {workers} workers" if scheduler is None else f"asking {scheduler}")
+    with connected(folder=home.folder, scheduler=scheduler, workers=workers) as client:
+        try:
+            bad = 0
+            for number, record in enumerate(_Submitting(client, jobs, home, run, runner), 1):
+                bad += record["status"] != "made"
+                progress(number / len(jobs), f"{number} of {len(jobs)} jobs" + (f", {bad} without a result" if bad else ""))
+                yield record
+        finally:
+            # Also when interrupted: a worker that waits for its job would not end.
+            with suppress(Exception):  # nothing is lost where a worker cannot be told
+                client.run(end_jobs, run, on_error="ignore")
+
+
+class _Submitting:
+    """Hands out as many jobs as the workers do at once, and gives their records as they end.
+
+    The rest waits here and not at the scheduler: a worker that dies takes nothing with it but what it was doing.
+    """
+
+    def __init__(self, client: Client, jobs: Sequence[Job], home: Home, run: str, runner: Sequence[str]) -> None:
+        self._client, self._home, self._run, self._runner = client, home, run, list(runner)
+        self._waiting = deque((job, 1) for job in jobs)
+        self._running: dict[str, tuple[Job, int, Future]] = {}
+        self._over: queue.SimpleQueue[Future] = queue.SimpleQueue()
+        self._slots = Slots(client)
+
+    def __iter__(self) -> Iterator[dict[str, Any]]:
+        while self._waiting or self._running:
+            while self._waiting and len(self._running) < self._slots.now():
+                self._submit(*self._waiting.popleft())
+            try:
+                future = self._over.get(timeout=_LOOK_S)
+            except queue.Empty:
+                self._slots.now()  # says so where there is nobody left to wait for
+                continue
+            job, times, _ = self._running.pop(str(future.key))
+            record = self._record(future, job, times)
+            if record is not None:
+                yield record
+
+    def _submit(self, job: Job, times: int) -> None:
+        key = f"skinfab-{job.name}-{self._run}-{times}"
+        future = self._client.submit(task, job, str(self._home.folder), self._run, self._runner, key=key, pure=False)
+        self._running[key] = (job, times, future)
+        future.add_done_callback(self._over.put)
+
+    def _record(self, future: Future, job: Job, times: int) -> dict[str, Any] | None:
+        """None where the job was put back."""
+        from distributed import KilledWorker
+
+        if future.status == "finished":
+            found: dict[str, Any] = future.result()
+            return found
+        if future.status != "error":
+            raise InputError(f"the Dask scheduler went away; start it and run the same command again: {RESUMES}")
+        fault = future.exception()
+        if isinstance(fault, InputError):
+            raise fault  # of the folder: no other job could be done either
+        if isinstance(fault, KilledWorker) and times < ATTEMPTS:
+            self._waiting.append((job, times + 1))  # by the scheduler's count; the job's own decides
+            return None
+        return {"job": job.name, "status": "not run", "message": f"{type(fault).__name__}: {fault}; run again"}
