@@ -65,7 +65,9 @@ def follow(C: FloatArray, kind: int, x: float, y: float, k: float, step: float, 
                 break
             px, py = px - way * step * fy / slope, py + way * step * fx / slope
         if way > 0:
-            first, n_first = points[:n].copy(), n
+            first, n_first = np.empty((n, 2)), n
+            for m in range(n):
+                first[m, 0], first[m, 1] = points[m, 0], points[m, 1]
             if closed or not left:
                 if closed and n:
                     first[n - 1, 0] = first[0, 0]
@@ -75,8 +77,9 @@ def follow(C: FloatArray, kind: int, x: float, y: float, k: float, step: float, 
         elif n > 1:
             whole = np.empty((n_first + n - 1, 2))
             for m in range(n - 1):
-                whole[m] = points[n - 1 - m]
-            whole[n - 1 :] = first
+                whole[m, 0], whole[m, 1] = points[n - 1 - m, 0], points[n - 1 - m, 1]
+            for m in range(n_first):
+                whole[n - 1 + m, 0], whole[n - 1 + m, 1] = first[m, 0], first[m, 1]
             return whole, False
     return first, False
 

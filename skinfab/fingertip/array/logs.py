@@ -118,7 +118,8 @@ def of_recording(recording: Recording, *, name: str, sha256: str = "", notes: tu
         raise InputError(f"{name} has {rest} frames in its first {REST_S:g} s; begin it untouched, with at least {REST_FRAMES} frames")
     flat = columns.ravel()
     valid, saturated = recording.valid[:, flat], recording.saturated[:, flat]
-    volts = np.where(valid & ~saturated, recording.values[:, flat], np.nan).reshape(len(time), *shape)
+    # Frame after frame in memory, as a port's are: of another layout all that is compiled would be compiled a second time.
+    volts = np.ascontiguousarray(np.where(valid & ~saturated, recording.values[:, flat], np.nan)).reshape(len(time), *shape)
     # A broken wire reads nothing, or 0 V. A tactel that never reads has no rest; it stays NaN.
     lost = ~np.isfinite(np.where(volts[:rest] > 0, volts[:rest], np.nan)).any(axis=0)
     rest_v = np.nanmedian(np.where(lost, 1.0, volts[:rest]), axis=0)

@@ -127,7 +127,10 @@ class Skin:
         g = self.geometry
         out = np.zeros(g.shape)
         for force, (axial, angle) in zip(forces, places, strict=True):
-            add_force(out, force, (axial, angle * g.core_radius), g.pitch, g.half, g.skin, self.rubber.poisson)
+            # Compiled once, for floats: a force of 2 N and one of 2.0 N are the same.
+            normal, along, around = map(float, force)
+            place = (float(axial), float(angle) * g.core_radius)
+            add_force(out, (normal, along, around), place, g.pitch, g.half, g.skin, self.rubber.poisson)
         return out * self.gains / self.rubber.young
 
     def lined(self, force_n: float, *, axial_mm: float, angle_rad: float, line_rad: float, length_mm: float | None = None) -> FloatArray:
