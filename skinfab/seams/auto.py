@@ -14,6 +14,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from skinfab.errors import RefusedError
 from skinfab.mesh.model import Mesh
 from skinfab.seams.coarse import coarsen, transfer
 from skinfab.seams.creases import crease_seams, without_scraps
@@ -41,6 +42,12 @@ _SEARCH_DECREASE = 1e-2
 
 #: Gluing may cost this part of what the bound allows above 4.
 _GLUE_EXCESS = 0.1
+
+#: This part of what the bound allows above 4 weighs as much as a piece.
+_STRETCH = 0.1
+
+#: Where a bound gives several pieces, those of tighter ones are looked at too: what keeps to one keeps to any looser one.
+_TIGHTER = (4.05, 4.1)
 
 #: An object that falls into more pieces than this is hardly meant for a skin: the second way is not tried.
 _MANY = 100
@@ -98,9 +105,28 @@ def find_seams(
     """
     if aim == "fewest":
         return Seams(*fewest_seams(mesh, limits, neck=neck, rules=rules, progress=progress))
+    bounds = [bound for bound in _TIGHTER if bound < limits.mean]
+    report = progress or (lambda done: None)
+    found = _usual(mesh, limits, neck, rules, lambda done: report(done / (1 + len(bounds))))
+    for k, bound in enumerate(bounds, start=1):
+        if len(found.pieces) <= mesh.topology.face_components()[0]:
+            break
+
+        def further(done: float, k: int = k) -> None:
+            report((k + done) / (1 + len(bounds)))
+
+        try:
+            other = _usual(mesh, replace(limits, mean=bound), neck, rules, further)
+        except RefusedError:  # what cannot keep to a tighter bound has its answer already
+            continue
+        found = min(found, other, key=lambda seams: len(seams.pieces))
+    return found
+
+
+def _usual(mesh: Mesh, limits: Limits, neck: float, rules: EdgeRules | None, report: Callable[[float], None]) -> Seams:
+    """Simple pieces well within one bound."""
     inner = replace(limits, mean=4 + _AIM * (limits.mean - 4))
     small = coarsen(mesh, _COARSE_FACES)
-    report = progress or (lambda done: None)
     if small is mesh:
         return _search(mesh, inner, limits, neck, rules, report)
     locked = None if rules is None else transfer(mesh, rules.locked, small)
@@ -148,11 +174,16 @@ def _search(mesh: Mesh, aim: Limits, limits: Limits, neck: float, rules: EdgeRul
         progress((k + 1) / len(starts))
         if len(found[-1].pieces) > _MANY:
             break
-    return min(found, key=lambda s: _cost(mesh, s))
+    return min(found, key=lambda s: _cost(mesh, s, limits))
 
 
-def _cost(mesh: Mesh, seams: Seams) -> float:
-    """Pieces, seam length and stretch in one number: 0.005 of mean d weighs as much as a piece or a root of the area in seam."""
+def _cost(mesh: Mesh, seams: Seams, limits: Limits) -> float:
+    """Pieces, seam length and stretch in one number: a tenth of what the bound allows above 4 (of the usual bound where it is
+    tighter) weighs as much as a piece or a root of the area in seam."""
     areas = np.array([mesh.face_areas[piece.faces].sum() for piece, _ in seams.pieces])
     mean = float(np.average([v.distortion.mean for _, v in seams.pieces], weights=areas))
-    return len(seams.pieces) + seam_length(mesh, seams.cut) / np.sqrt(mesh.area) + 200 * (mean - 4)
+    return (
+        len(seams.pieces)
+        + seam_length(mesh, seams.cut) / np.sqrt(mesh.area)
+        + (mean - 4) / (_STRETCH * max(limits.mean - 4, Limits.mean - 4))
+    )

@@ -4,9 +4,11 @@ import numpy as np
 import pytest
 import shapes
 
+from skinfab.errors import RefusedError
 from skinfab.mesh.decimate import decimate
 from skinfab.mesh.model import Mesh
-from skinfab.seams.auto import find_seams
+from skinfab.seams import auto
+from skinfab.seams.auto import Seams, find_seams
 from skinfab.seams.cut import open_pieces, seam_length
 from skinfab.seams.judge import Limits
 from skinfab.tolerances import OVERLAP_FRACTION
@@ -80,3 +82,42 @@ def test_a_large_strip_is_cut_to_the_bed() -> None:
     assert len(seams.pieces) >= 4
     for _, verdict in seams.pieces:
         assert verdict.UV.max() <= 200
+
+
+def test_more_room_for_d_gives_less_seam() -> None:
+    """With a price of d that did not know the bound, the cup's six regions between creases beat its one piece at 4.1 and 4.2."""
+    cup = shapes.object_mesh("cup")
+    few = decimate(cup.V, cup.F, faces=1500)
+    mesh = Mesh(few.V, few.F)
+    found = [find_seams(mesh, Limits(mean=bound)) for bound in (4.05, 4.1, 4.2)]
+    assert [len(seams.pieces) for seams in found] == [1, 1, 1]
+    lengths = [seam_length(mesh, seams.cut) for seams in found]
+    assert lengths[0] > lengths[1] > lengths[2]
+
+
+@pytest.mark.parametrize(
+    ("gives", "bound", "asked", "pieces"),
+    [
+        ({4.2: 3, 4.05: 2, 4.1: 4}, 4.2, [4.2, 4.05, 4.1], 2),
+        ({4.2: 3, 4.05: 0, 4.1: 2}, 4.2, [4.2, 4.05, 4.1], 2),  # 0: refused
+        ({4.2: 1, 4.05: 1, 4.1: 1}, 4.2, [4.2], 1),
+        ({4.1: 3, 4.05: 3}, 4.1, [4.1, 4.05], 3),
+        ({4.05: 3}, 4.05, [4.05], 3),
+    ],
+)
+def test_pieces_of_a_tighter_bound_are_pieces_of_a_looser(monkeypatch, gives, bound: float, asked: list[float], pieces: int) -> None:
+    mesh = shapes.object_mesh("cube")
+    seen: list[float] = []
+    told: list[float] = []
+
+    def fake(mesh, limits, neck, rules, report) -> Seams:
+        seen.append(limits.mean)
+        report(0.5)
+        report(1.0)
+        if not gives[limits.mean]:
+            raise RefusedError("no")
+        return Seams(np.zeros(0, dtype=bool), [None] * gives[limits.mean])  # type: ignore[list-item]
+
+    monkeypatch.setattr(auto, "_usual", fake)
+    assert len(find_seams(mesh, Limits(mean=bound), progress=told.append).pieces) == pieces
+    assert seen == asked and told == sorted(told) and told[-1] <= 1
