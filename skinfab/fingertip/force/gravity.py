@@ -199,6 +199,8 @@ def centre_of_gravity(force: ArrayLike, moment: ArrayLike, covariance: ArrayLike
         information = np.einsum("nji,njk,nkl->il", design, weight, design)
         slope = np.einsum("nji,njk,nk->i", design, weight, residual)
         # The moments' part of x is N mm and the point's mm: scaled, so that neither is lost in the other's digits.
+        if not (np.diag(information) > 0).all():
+            raise _undetermined(F)
         scale = 1 / np.sqrt(np.diag(information))
         try:
             step = -scale * np.linalg.solve(information * np.outer(scale, scale), scale * slope)
