@@ -25,7 +25,8 @@ _TRAINED = ("model.npz", "result.json")
 _RUN = ("gravity.csv", "gravity.png", "result.json")
 #: Headings of truth.csv, which lies beside the simulator's logs and is none.
 _TRUE = ("log", "x_mm", "y_mm", "z_mm", "mass_kg", "simulated")
-#: Of the simulated hands that are weighed empty: a fingertip's mass, and how far an offset drifts from log to log.
+#: Of simulated hands: a fingertip's mass, and how far an offset drifts from log to log. The same whether they are weighed or not:
+#: a hand whose fingertips weigh something when it is weighed alone would make every object lighter.
 _TIP_KG, _DRIFT_N = 0.01, 0.01
 #: From the hand's origin to what it holds.
 _HAND_MM = 300.0
@@ -55,7 +56,7 @@ def add_parsers(topics: Mapping[str, argparse._SubParsersAction[argparse.Argumen
         metavar="N",
         type=repeats,
         default=0,
-        help="weigh each hand empty too, so many times; its fingertips then have 10 g, and its offsets drift by 0.01 N (default: none)",
+        help="weigh each hand empty too, so many times (default: none)",
     )
     p.add_argument("--seed", type=steps.seed, default=0, help="of all chance (default: 0)")
     add_output(p, "a log a place, and truth.csv")
@@ -101,9 +102,7 @@ def simulate(args: argparse.Namespace) -> int:
     from skinfab.fingertip.force.logs import write_wrench
     from skinfab.staging import staged_folder
 
-    scene = HandScene(poses=args.poses, span_deg=args.span)
-    if args.weighings:
-        scene = replace(scene, tip_kg=_TIP_KG, drift_n=_DRIFT_N)
+    scene = HandScene(poses=args.poses, span_deg=args.span, tip_kg=_TIP_KG, drift_n=_DRIFT_N)
     empty = []
     names = [f"{place.replace(' ', '-')}.csv" for place in PAPER_PLACES]
     truth = [list(_TRUE)]
@@ -219,9 +218,10 @@ def run(args: argparse.Namespace) -> int:
         print(json.dumps(result, allow_nan=False))
         return 0
     steps.say(notes)
+    with_tips = "" if model else " with the fingertips"
     for each in found:
         x, y, z = each.centre.point
-        mass = f", {1000 * each.mass.kg:.1f} +- {1000 * each.mass.sd_kg:.1f} g" if each.mass else ""
+        mass = f", {1000 * each.mass.kg:.1f} +- {1000 * each.mass.sd_kg:.1f} g{with_tips}" if each.mass else ""
         made = " (simulated)" if each.log.simulated else ""
         print(
             f"{each.log.name}{made}: {x:.1f}, {y:.1f}, {z:.1f} mm, +- {each.centre.sd_mm:.2f} in the worst direction{mass}; "
