@@ -11,6 +11,7 @@ from gcode.used import Used
 from gcode.write import PieceGcode, write_previews, write_skin
 from skinfab.document import save_skin
 from skinfab.drawings.dxf import write_dxf
+from skinfab.drawings.labels import skin_labels
 from skinfab.drawings.obj import write_flat_obj
 from skinfab.drawings.pdf import write_pdf
 from skinfab.drawings.sheet import sheet_offsets
@@ -141,9 +142,10 @@ def _write_moulds(skin: Skin, folder: Path, used: Used) -> list[CastingMould]:
 
 
 def _write_drawings(skin: Skin, folder: Path, moulds: list[CastingMould]) -> None:
-    write_svg(skin, folder / "flat.svg")
-    write_pdf(skin, folder / "flat.pdf", moulds=moulds)
-    write_dxf(skin, folder / "flat.dxf")
+    labels = skin_labels(skin)
+    write_svg(skin, folder / "flat.svg", labels=labels)
+    write_pdf(skin, folder / "flat.pdf", moulds=moulds, labels=labels)
+    write_dxf(skin, folder / "flat.dxf", labels=labels)
     write_flat_obj(skin.mesh, skin.pieces, sheet_offsets(skin.pieces), folder / "flat.obj")
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path as FilePath
 from typing import Any
@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from skinfab.drawings.labels import Label, origin_cross, piece_labels
+from skinfab.drawings.labels import Label, origin_cross, skin_labels
 from skinfab.drawings.seam_sides import SeamSide, seam_sides
 from skinfab.drawings.sheet import sheet_offsets
 from skinfab.drawings.strokes import NOTCH_MM, TEXT_MM, pad_paths, short_arcs
@@ -25,7 +25,7 @@ from skinfab.skin import Skin
 LAYERS = {"OUTLINE": 7, "SEAM": 1, "DART": 30, "BORDER": 8, "NOTCH": 1, "CONDUCTOR": 5, "PAD": 4, "LABEL": 3, "ORIGIN": 3}
 
 
-def write_dxf(skin: Skin, path: str | FilePath) -> None:
+def write_dxf(skin: Skin, path: str | FilePath, *, labels: Sequence[Sequence[Label]] | None = None) -> None:
     """Draw the whole skin on one sheet, 1:1, for a cutter or a CAD program.
 
     A sensor's conductor is one polyline of lines and bulges (exact arcs) on layer CONDUCTOR, as wide as its
@@ -37,6 +37,8 @@ def write_dxf(skin: Skin, path: str | FilePath) -> None:
     ----------
     skin : Skin
     path : path
+    labels : sequence of sequence of Label, optional
+        `skinfab.drawings.labels.skin_labels` of the skin, where several drawings are made of it.
 
     Raises
     ------
@@ -46,6 +48,7 @@ def write_dxf(skin: Skin, path: str | FilePath) -> None:
     import ezdxf
     from ezdxf import units
 
+    words = skin_labels(skin) if labels is None else labels
     with _fixed_dates():
         drawing = ezdxf.new("R2010", units=units.MM)
         for name, colour in LAYERS.items():
@@ -65,7 +68,7 @@ def write_dxf(skin: Skin, path: str | FilePath) -> None:
                 _stroke(space, sensor.path, offset, "CONDUCTOR", sensor.pattern.bead)
                 for pad in pad_paths(sensor):
                     _stroke(space, pad, offset, "PAD", sensor.pattern.bead)
-            for label in piece_labels(piece, mine, skin.sensors_on(piece.id)):
+            for label in words[k]:
                 _label(space, label, offset)
         top = max((float((piece.UV + offset)[:, 1].max()) for piece, offset in zip(skin.pieces, offsets, strict=True)), default=0.0)
         _label(space, Label("size", THIS_SIDE_OUT, np.array([0.0, top + 2 * TEXT_MM]), left=True), np.zeros(2))

@@ -10,11 +10,12 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from skinfab.drawings.seam_sides import SeamSide
+from skinfab.drawings.seam_sides import SeamSide, seam_sides
 from skinfab.drawings.strokes import NOTCH_MM, TEXT_MM
 from skinfab.paths import Point
 from skinfab.pieces import Piece
 from skinfab.placement.sensor import Sensor
+from skinfab.skin import Skin
 from skinfab.tolerances import PREVIEW_CHORD_MM
 from skinfab.wire_exits import wire_pads
 
@@ -75,6 +76,12 @@ class Label:
     def box(self) -> shapely.Polygon:
         low = self.at - np.array([0.0 if self.left else self.width / 2, self.height / 2])
         return shapely.box(*low, *(low + np.array([self.width, self.height])))
+
+
+def skin_labels(skin: Skin) -> list[list[Label]]:
+    """The words of each piece, in order: `piece_labels` of all, for drawings of the same skin to share."""
+    sides = seam_sides(skin.pieces)
+    return [piece_labels(piece, [s for s in sides if s.piece == k], skin.sensors_on(piece.id)) for k, piece in enumerate(skin.pieces)]
 
 
 def piece_labels(piece: Piece, sides: Sequence[SeamSide], sensors: Sequence[Sensor]) -> list[Label]:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skinfab import __version__
-from skinfab.drawings.labels import SMALL_MM, origin_cross, piece_labels
+from skinfab.drawings.labels import SMALL_MM, Label, origin_cross, skin_labels
 from skinfab.drawings.seam_sides import SeamSide, seam_sides
 from skinfab.drawings.strokes import NOTCH_MM, TEXT_MM, pad_paths, short_arcs
 from skinfab.drawings.tiles import BORDER_MM, FOOT_MM, Tiling, tile
@@ -43,7 +43,9 @@ _COLOUR = {"seam": "#b03a2e", "dart": "#d68910", "border": "#566573", "sensor": 
 _INK, _PAD, _MOULD, _PLAIN = "#1c2833", "#2e86c1", "#7d3c98", "#212f3d"
 
 
-def write_pdf(skin: Skin, path: str | FilePath, *, moulds: Sequence[CastingMould] = ()) -> None:
+def write_pdf(
+    skin: Skin, path: str | FilePath, *, moulds: Sequence[CastingMould] = (), labels: Sequence[Sequence[Label]] | None = None
+) -> None:
     """Draw each piece at true size on A4; the same skin gives the same bytes.
 
     A sheet shows the outline with its seams, notches and seam numbers, the sensors with the bead at its true width and
@@ -57,6 +59,8 @@ def write_pdf(skin: Skin, path: str | FilePath, *, moulds: Sequence[CastingMould
     path : path
     moulds : sequence of CastingMould, optional
         Of these, the L marks and the wires' ways from pad to slot are drawn too.
+    labels : sequence of sequence of Label, optional
+        `skinfab.drawings.labels.skin_labels` of the skin, where several drawings are made of it.
 
     Raises
     ------
@@ -66,6 +70,7 @@ def write_pdf(skin: Skin, path: str | FilePath, *, moulds: Sequence[CastingMould
     import matplotlib
     from matplotlib.backends.backend_pdf import PdfPages
 
+    words = skin_labels(skin) if labels is None else labels
     by_piece = {mould.piece: mould for mould in moulds}
     sides = seam_sides(skin.pieces)
     facts = {"Title": f"{skin.mesh.name}: flat pieces, 1:1", "Creator": f"skinfab {__version__}", "Producer": None, "CreationDate": None}
@@ -76,7 +81,8 @@ def write_pdf(skin: Skin, path: str | FilePath, *, moulds: Sequence[CastingMould
         PdfPages(partial, metadata=facts) as pages,
     ):
         for k, piece in enumerate(skin.pieces):
-            drawing = _Drawing(piece, [side for side in sides if side.piece == k], skin.sensors_on(piece.id), by_piece.get(piece.id))
+            mine = [side for side in sides if side.piece == k]
+            drawing = _Drawing(piece, mine, skin.sensors_on(piece.id), by_piece.get(piece.id), words[k])
             tiling = tile(*drawing.box)
             rows, columns = tiling.corners.shape[:2]
             for row in range(rows):
@@ -185,9 +191,10 @@ class _Pen:
 class _Drawing:
     """All that is drawn of one piece, in its frame."""
 
-    def __init__(self, piece: Piece, sides: Sequence[SeamSide], sensors: Sequence[Sensor], mould: CastingMould | None) -> None:
-        self.piece, self.sides, self.sensors, self.mould = piece, sides, sensors, mould
-        self.labels = piece_labels(piece, sides, sensors)
+    def __init__(
+        self, piece: Piece, sides: Sequence[SeamSide], sensors: Sequence[Sensor], mould: CastingMould | None, labels: Sequence[Label]
+    ) -> None:
+        self.piece, self.sides, self.sensors, self.mould, self.labels = piece, sides, sensors, mould, labels
         corners = [piece.UV - _ROOM_MM, piece.UV + _ROOM_MM]
         if mould is not None:
             corners += [mould.marks - 1.0, mould.marks + 1.0]

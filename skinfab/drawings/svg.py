@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from pathlib import Path as FilePath
 from xml.sax.saxutils import escape, quoteattr
 
 import numpy as np
 from numpy.typing import NDArray
 
-from skinfab.drawings.labels import SMALL_MM, Label, origin_cross, piece_labels
+from skinfab.drawings.labels import SMALL_MM, Label, origin_cross, skin_labels
 from skinfab.drawings.seam_sides import SeamSide, seam_sides
 from skinfab.drawings.sheet import sheet_offsets
 from skinfab.drawings.strokes import NOTCH_MM, TEXT_MM, pad_paths, short_arcs
@@ -56,7 +57,7 @@ _CLASS = {"piece": "piece-name", "size": "size", "sensor": "sensor-name", "seam"
 THIS_SIDE_OUT = "This side out: the pieces are seen from outside the object"
 
 
-def write_svg(skin: Skin, path: str | FilePath) -> None:
+def write_svg(skin: Skin, path: str | FilePath, *, labels: Sequence[Sequence[Label]] | None = None) -> None:
     """Draw the whole skin on one sheet, 1:1.
 
     A legend, and one group a piece, with its outline, its seam sides (with a notch and a number, the same on both
@@ -67,12 +68,15 @@ def write_svg(skin: Skin, path: str | FilePath) -> None:
     ----------
     skin : Skin
     path : path
+    labels : sequence of sequence of Label, optional
+        `skinfab.drawings.labels.skin_labels` of the skin, where several drawings are made of it.
 
     Raises
     ------
     InputError
         The file cannot be written.
     """
+    words = skin_labels(skin) if labels is None else labels
     offsets = sheet_offsets(skin.pieces)
     far = np.max([np.zeros(2), *(piece.UV.max(axis=0) + offset for piece, offset in zip(skin.pieces, offsets, strict=True))], axis=0)
     sides = seam_sides(skin.pieces)
@@ -95,7 +99,7 @@ def write_svg(skin: Skin, path: str | FilePath) -> None:
             body.append(f'<path class="conductor" d="{pen.path(sensor.path)}"/>')
             body.append("</g>")
         body.append(f'<path class="origin" d="{"".join(pen.polyline(stroke) for stroke in origin_cross())}"/>')
-        body += [pen.label(label) for label in piece_labels(piece, mine, skin.sensors_on(piece.id))]
+        body += [pen.label(label) for label in words[k]]
         body.append("</g>")
     w, h = mm(width), mm(height)
     head = f'<svg xmlns="http://www.w3.org/2000/svg" width="{w}mm" height="{h}mm" viewBox="0 0 {w} {h}">'
