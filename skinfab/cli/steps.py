@@ -136,8 +136,8 @@ def require_fitting_options(args: argparse.Namespace) -> None:
     """Options that do not go together are wrong usage."""
     if args.complete and args.cuts is None:
         args.wrong_usage("--complete goes with --cuts FILE")
-    if args.pieces != "usual" and args.cuts is not None:
-        args.wrong_usage("--pieces is for automatic seams, and --cuts gives them by hand; give one of them")
+    if args.pieces != "usual" and args.cuts is not None and not args.complete:
+        args.wrong_usage("--pieces is for automatic seams, and --cuts gives them by hand; give one of them, or add --complete")
     if args.wrap is not None and args.cuts is not None:
         args.wrong_usage("--cuts names vertices of the mesh file, and --wrap makes a surface of its own; give one of them")
     if args.mesh.suffix.lower() != ".skin":
@@ -233,29 +233,29 @@ def cut(args: argparse.Namespace, loaded: Loaded, mesh: Mesh, used: Used, progre
     """Automatic seams of the surface that is flattened, or those that ``--cuts`` gives."""
     from skinfab.seams.auto import find_seams
 
-    within = limits(bound_of(args), used, args.max_p99)
+    within, neck = limits(bound_of(args), used, args.max_p99), used.material.neck
+
+    def report(done: float) -> None:
+        progress(done, "cutting and flattening")
+
     if args.cuts is not None:
-        return _by_hand(args, loaded, mesh, within)
-    return find_seams(
-        mesh, within, neck=used.material.neck, aim=args.pieces, progress=lambda done: progress(done, "cutting and flattening")
-    )
+        return _by_hand(args, loaded, mesh, within, neck, report)
+    return find_seams(mesh, within, neck=neck, aim=args.pieces, progress=report)
 
 
-def _by_hand(args: argparse.Namespace, loaded: Loaded, mesh: Mesh, within: Limits) -> Seams:
+def _by_hand(args: argparse.Namespace, loaded: Loaded, mesh: Mesh, within: Limits, neck: float, progress: Callable[[float], None]) -> Seams:
     from skinfab.mesh.io import load_mesh
-    from skinfab.seams.auto import Seams
-    from skinfab.seams.manual import cut_along, read_cuts, seams_by_hand
-    from skinfab.seams.refine import refine_seams
-    from skinfab.seams.weights import seam_weights
+    from skinfab.seams.manual import completed, cut_along, numbers_in, read_cuts, seams_by_hand
 
     # Numbers in the file count the mesh file's vertices, before any cleaning.
     raw = load_mesh(args.mesh, units=args.units, scale=args.scale).mesh
     paths = [raw.V[path] for path in read_cuts(args.cuts, len(raw.V))]
+    numbers = numbers_in(raw, loaded.mesh)
     # The surface that is flattened has the same vertices and edges, elsewhere.
-    by_hand = cut_along(loaded.mesh, paths)
+    by_hand = cut_along(loaded.mesh, paths, numbers=numbers)
     if not args.complete:
-        return seams_by_hand(mesh, by_hand, within)
-    seams = Seams(*refine_seams(mesh, by_hand, within, seam_weights(mesh)))
+        return seams_by_hand(mesh, by_hand, within, numbers=numbers)
+    seams = completed(mesh, by_hand, within, neck=neck, aim=args.pieces, progress=progress)
     added = int((seams.cut & ~by_hand).sum())
     say([f"{added} edges were cut beyond those given by hand"] if added else [])
     return seams

@@ -11,19 +11,26 @@ creases preferred. A path may close by ending where it began, and may touch or c
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 
 from skinfab.errors import InputError, RefusedError
 from skinfab.mesh.model import Mesh
-from skinfab.seams.auto import Seams
+from skinfab.mesh.topology import Topology
+from skinfab.seams.auto import Aim, Seams, find_seams
 from skinfab.seams.cut import OpenPiece, open_pieces
 from skinfab.seams.graph import edge_graph, trace
 from skinfab.seams.judge import Limits, Verdict, excess, judge
+from skinfab.seams.naming import as_paths, bounds_of, idle, named_edges
+from skinfab.seams.refine import next_cut, refine_seams
+from skinfab.seams.rules import EdgeRules
 from skinfab.seams.weights import seam_weights
 
 IntArray = NDArray[np.int64]
@@ -31,6 +38,9 @@ BoolArray = NDArray[np.bool_]
 
 #: A cuts file longer than this is not one.
 _MOST_BYTES = 50_000_000
+
+#: So many of the paths that would help are told; the next attempt tells the rest.
+_SAID = 3
 
 
 def read_cuts(path: str | Path, n_vertices: int) -> list[IntArray]:
@@ -76,7 +86,7 @@ def read_cuts(path: str | Path, n_vertices: int) -> list[IntArray]:
     return paths
 
 
-def cut_along(mesh: Mesh, paths: list[NDArray[np.float64]]) -> BoolArray:
+def cut_along(mesh: Mesh, paths: list[NDArray[np.float64]], *, numbers: IntArray | None = None) -> BoolArray:
     """Seam edges of paths given by their points on the mesh.
 
     Parameters
@@ -85,6 +95,8 @@ def cut_along(mesh: Mesh, paths: list[NDArray[np.float64]]) -> BoolArray:
     paths : list of (k, 3) float64, mm
         Vertex positions; each is taken to the nearest vertex of `mesh`, so that numbers given for a file hold
         on the cleaned mesh too.
+    numbers : (n,) int64, optional
+        What the user calls each vertex; default its own number.
 
     Returns
     -------
@@ -93,7 +105,7 @@ def cut_along(mesh: Mesh, paths: list[NDArray[np.float64]]) -> BoolArray:
     Raises
     ------
     InputError
-        Two neighbours of a path lie on different components.
+        Two neighbours of a path lie on different components, or all points of a path are one vertex.
     """
     topology = mesh.topology
     cut = np.zeros(len(topology.E), dtype=bool)
@@ -102,38 +114,106 @@ def cut_along(mesh: Mesh, paths: list[NDArray[np.float64]]) -> BoolArray:
     graph = edge_graph(topology, seam_weights(mesh), len(mesh.V))
     for number, points in enumerate(paths, start=1):
         vertices = used[tree.query(points)[1]]
-        for a, b in zip(vertices[:-1].tolist(), vertices[1:].tolist(), strict=True):
-            edge = topology.edge_ids(np.array([[a, b]]))
-            if edge[0] < 0 and a != b:
-                distance, before = dijkstra(graph, indices=a, return_predecessors=True)
-                if not np.isfinite(distance[b]):
-                    raise InputError(f"cut {number}: vertices {a} and {b} lie on different components; no seam can join them")
-                edge = topology.edge_ids(trace(before.astype(np.int64), b))
-            if a != b:
-                cut[edge] = True
+        called = vertices if numbers is None else numbers[vertices]
+        if (vertices == vertices[0]).all():
+            raise InputError(
+                f"cut {number}: all its points are vertex {called[0]}, so it has no length; give a path of two vertices or more"
+            )
+        # Where sheets touch in a point, cleaning gave each its own vertex there: the path goes by the one that leads on.
+        at = [used[tree.query_ball_point(mesh.V[v], 0.0)] for v in vertices]
+        for k, (starts, ends) in enumerate(pairwise(at)):
+            if np.array_equal(starts, ends):
+                continue
+            way = _way(topology, graph, starts, ends)
+            if not len(way):
+                raise InputError(
+                    f"cut {number}: vertices {called[k]} and {called[k + 1]} lie on different components; no seam can join them"
+                )
+            cut[way] = True
     return cut
 
 
-def seams_by_hand(mesh: Mesh, cut: BoolArray, limits: Limits) -> Seams:
+def _way(topology: Topology, graph: csr_array, starts: IntArray, ends: IntArray) -> IntArray:
+    """The edge from one of `starts` to one of `ends`, else the cheapest way over edges; none where they are not connected."""
+    edges = topology.edge_ids(np.stack(np.meshgrid(starts, ends), axis=-1).reshape(-1, 2))
+    if (edges >= 0).any():
+        return edges[edges >= 0][:1]
+    distance, before, _ = dijkstra(graph, indices=starts, return_predecessors=True, min_only=True)
+    end = int(ends[np.argmin(distance[ends])])
+    return topology.edge_ids(trace(before.astype(np.int64), end)) if np.isfinite(distance[end]) else np.zeros(0, dtype=np.int64)
+
+
+def numbers_in(file: Mesh, mesh: Mesh) -> IntArray:
+    """(n,) what each vertex of `mesh` is called in the mesh as its `file` has it, before it was cleaned: by place."""
+    numbers: IntArray = cKDTree(file.V).query(mesh.V)[1].astype(np.int64)
+    return numbers
+
+
+def completed(
+    mesh: Mesh,
+    cut: BoolArray,
+    limits: Limits,
+    *,
+    neck: float = 4.0,
+    aim: Aim = "usual",
+    progress: Callable[[float], None] | None = None,
+) -> Seams:
+    """These seams, and automatic ones where they do not give pieces within `limits`.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    cut : (e,) bool
+        All of it stays cut.
+    limits : Limits
+    neck : float, mm
+    aim : "fewest" or "usual"
+        See `find_seams`; the usual ones only cut further what is not good yet.
+    progress : callable, optional
+        Called with the part that is done, 0 to 1.
+    """
+    if aim == "usual":
+        return Seams(*refine_seams(mesh, cut, limits, seam_weights(mesh), progress=progress))
+    nothing = np.zeros(len(cut), dtype=bool)
+    rules = EdgeRules(np.ones(len(cut)), cut & ~mesh.topology.is_boundary, nothing)
+    return find_seams(mesh, limits, neck=neck, rules=rules, aim=aim, progress=progress)
+
+
+def seams_by_hand(mesh: Mesh, cut: BoolArray, limits: Limits, *, numbers: IntArray | None = None) -> Seams:
     """Just these seams, each piece checked.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    cut : (e,) bool
+    limits : Limits
+    numbers : (n,) int64, optional
+        What the user calls each vertex; default its own number.
 
     Raises
     ------
     InputError
         A piece is not a disk.
     RefusedError
-        A piece breaks `limits`.
+        A piece breaks `limits`. Either error names the cuts that bound the piece and a path that would help.
     """
     pieces = []
+    weight = seam_weights(mesh)
     for number, piece in enumerate(open_pieces(mesh, cut), start=1):
-        if not piece.is_disk:
-            raise InputError(f"the cuts leave piece {number} ({len(piece.faces)} faces) {_shape(piece)}; {_more(piece)}, or add --complete")
-        verdict = judge(mesh, piece, limits)
-        if not verdict.accepted:
-            raise RefusedError(
-                f"piece {number} ({len(piece.faces)} faces) {_fault(verdict, limits)}; cut it further by hand, or add --complete"
-            )
-        pieces.append((piece, verdict))
+        verdict = judge(mesh, piece, limits) if piece.is_disk else None
+        if verdict is not None and verdict.accepted:
+            pieces.append((piece, verdict))
+            continue
+        bounds = bounds_of(mesh, piece, cut)
+        within = f" within the cuts {named_edges(mesh, bounds, numbers=numbers)}" if len(bounds) else ""
+        who = f"piece {number} ({len(piece.faces)} faces{within})"
+        paths = as_paths(mesh, next_cut(mesh, piece, verdict, weight)[0], numbers=numbers)
+        further = f", such as along {' and '.join(paths[:_SAID])}" if paths else ""
+        if verdict is None:
+            alone = idle(mesh, piece, cut)
+            nothing = f" (a cut of one edge alone, {named_edges(mesh, alone, numbers=numbers)}, opens nothing)" if len(alone) else ""
+            raise InputError(f"the cuts leave {who} {_shape(piece)}{nothing}; {_more(piece)}{further}, or add --complete")
+        raise RefusedError(f"{who} {_fault(verdict, limits)}; cut it further by hand{further}, or add --complete")
     return Seams(cut, pieces)
 
 

@@ -13,6 +13,7 @@ from skinfab.seams.cut import OpenPiece, mesh_edges, open_pieces
 from skinfab.seams.darts import grow_dart
 from skinfab.seams.disk import cut_to_disk
 from skinfab.seams.judge import Limits, Verdict, excess, judge
+from skinfab.seams.naming import named_edges
 from skinfab.seams.split import farthest_faces, overlapping_faces, part, split
 from skinfab.tolerances import NEWTON_DECREASE
 
@@ -81,11 +82,7 @@ def refine_seams(
     while todo:
         piece, darts = todo.pop()
         verdict = None
-        if not piece.is_disk:
-            topology = piece.topology
-            edge_weight = weight[mesh_edges(mesh, piece, np.arange(len(topology.E)))]
-            opened = mesh_edges(mesh, piece, cut_to_disk(topology, edge_weight, len(piece.vertices)))
-        else:
+        if piece.is_disk:
             left -= len(piece.F)
             if left < 0:
                 raise _endless(mesh, len(done), 1 - finished_area / mesh.area)
@@ -96,11 +93,12 @@ def refine_seams(
                 if progress:
                     progress(finished_area / mesh.area)
                 continue
-            opened, darts = _mend(mesh, piece, verdict, weight, darts)
+        opened, darts = next_cut(mesh, piece, verdict, weight, darts)
         if forbidden is not None and forbidden[opened].any():
+            kept = opened[forbidden[opened]]
             opened = opened[~forbidden[opened]]
             if cut[opened].all():
-                raise _forbidden(piece)
+                raise _forbidden(mesh, piece, verdict, kept, limits)
         if cut[opened].all():
             raise _stuck(mesh, piece, verdict, limits)
         cut[opened] = True
@@ -109,8 +107,26 @@ def refine_seams(
     return cut, sorted(done, key=lambda item: int(item[0].faces[0]))
 
 
-def _mend(mesh: Mesh, piece: OpenPiece, verdict: Verdict, weight: NDArray[np.float64], darts: int) -> tuple[NDArray[np.int64], int]:
-    """Edges to open next, and how many darts the piece then has."""
+def next_cut(
+    mesh: Mesh, piece: OpenPiece, verdict: Verdict | None, weight: NDArray[np.float64], darts: int = 0
+) -> tuple[NDArray[np.int64], int]:
+    """Mesh edges to open next, and how many darts the piece then has.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    piece : OpenPiece
+    verdict : Verdict or None
+        What is wrong with it; None where it is no disk.
+    weight : (e,) float
+        Cost of cutting each edge.
+    darts : int
+        It has already.
+    """
+    if verdict is None:
+        topology = piece.topology
+        edge_weight = weight[mesh_edges(mesh, piece, np.arange(len(topology.E)))]
+        return mesh_edges(mesh, piece, cut_to_disk(topology, edge_weight, len(piece.vertices))), darts
     if verdict.too_distorted and not verdict.too_large and darts < _MOST_DARTS:
         dart = grow_dart(mesh, piece, verdict.distortion.d, weight)
         if len(dart):
@@ -131,9 +147,19 @@ def _endless(mesh: Mesh, pieces: int, missing: float) -> RefusedError:
     )
 
 
-def _forbidden(piece: OpenPiece) -> RefusedError:
+def _forbidden(mesh: Mesh, piece: OpenPiece, verdict: Verdict | None, edges: NDArray[np.int64], limits: Limits) -> RefusedError:
+    """The edges that the next cut would have to take, and what it is for."""
     where = f"the {len(piece.faces)} faces about face {int(piece.faces[0])}"
-    return RefusedError(f"the forbidden edges leave no seam that lays {where} flat; allow some of them")
+    if verdict is None:
+        why = "they are not open to a disk"
+    elif verdict.too_distorted:
+        why = f"they have {excess(verdict.distortion, limits)}"
+    elif verdict.too_large:
+        why = "they do not fit the bed"
+    else:
+        why = "they cover themselves" if verdict.overlaps else "they have a neck that would tear"
+    names = named_edges(mesh, edges)
+    return RefusedError(f"the forbidden edges leave no seam that lays {where} flat; allow some of them, such as {names} ({why})")
 
 
 def _stuck(mesh: Mesh, piece: OpenPiece, verdict: Verdict | None, limits: Limits) -> SkinfabError:

@@ -92,7 +92,8 @@ def test_too_few_cuts_are_explained_or_completed(tmp_path: Path, capsys: pytest.
         ("0 8\n", 1, "vertex 8 does not exist; the mesh has vertices 0 to 7"),
         ("0 -1\n", 1, "vertex -1 does not exist"),
         ("\x00\x01", 1, "not a list of vertex numbers"),
-        ("0 0\n", 1, "closed; cut it open"),
+        ("0 0\n", 1, "all its points are vertex 0, so it has no length"),
+        ("0 1\n", 1, "closed (a cut of one edge alone, 0-1, opens nothing); cut it open, such as along"),
     ],
 )
 def test_wrong_cuts(text: str, status: int, says: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

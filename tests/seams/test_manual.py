@@ -1,5 +1,7 @@
 """Cuts by hand: read with every fault named, honoured to the edge, checked like any others."""
 
+import re
+
 import numpy as np
 import pytest
 import shapes
@@ -10,7 +12,7 @@ from skinfab.errors import InputError, RefusedError
 from skinfab.mesh.model import Mesh
 from skinfab.seams.cut import open_pieces
 from skinfab.seams.judge import Limits
-from skinfab.seams.manual import cut_along, read_cuts, seams_by_hand
+from skinfab.seams.manual import completed, cut_along, numbers_in, read_cuts, seams_by_hand
 from skinfab.seams.weights import dihedral_angles
 
 
@@ -122,7 +124,7 @@ def test_seams_are_honoured_to_the_edge() -> None:
 @pytest.mark.parametrize(
     ("surface", "says"),
     [
-        (shapes.sphere(), r"leave piece 1 \(320 faces\) closed; cut it open, or add --complete"),
+        (shapes.sphere(), r"leave piece 1 \(320 faces\) closed; cut it open, such as along \d+ .*\d+, or add --complete"),
         (shapes.holed(), r"leave piece 1 \(284 faces\) with 3 boundary loops; cut from one loop to the other"),
         ((shapes.torus()[0], np.delete(shapes.torus()[1], 7, axis=0)), r"with a handle \(Euler number -1\); cut through the handle"),
     ],
@@ -152,3 +154,89 @@ def test_pieces_that_break_a_limit_are_refused(surface, limits: Limits, says: st
     mesh = Mesh(*surface)
     with pytest.raises(RefusedError, match=says):
         seams_by_hand(mesh, np.zeros(len(mesh.topology.E), dtype=bool), limits)
+
+
+def bumpy() -> Mesh:
+    V, F = shapes.sphere(2)
+    return Mesh(V * (10 + np.sin(3 * V[:, :1]) + V[:, 1:2] ** 2), F)
+
+
+@pytest.mark.parametrize(
+    ("mesh", "limits", "pieces"),
+    [
+        (bumpy(), Limits(), 1),
+        (Mesh(*shapes.torus(3, 1, 24, 10)), Limits(), 1),
+        (Mesh(*shapes.holed()), Limits(), 1),
+        (Mesh(*shapes.grid(9, 1, lambda s, t: np.stack([90 * s, 5 * t, 0 * s], axis=1))), Limits(size=(50, 40)), 3),
+        (
+            Mesh(
+                *shapes.grid(
+                    60, 8, lambda s, t: np.stack([60 * s, (2 * t - 1) * (6 - 5 * np.exp(-(((s - 0.4) / 0.08) ** 2))), 0 * s], axis=1)
+                )
+            ),
+            Limits(neck=4),
+            2,
+        ),
+    ],
+    ids=["closed", "handle", "holes", "large", "neck"],
+)
+def test_who_does_what_the_errors_say_gets_there(mesh: Mesh, limits: Limits, pieces: int) -> None:
+    """Each error names a path, in a user's own numbers; with those paths in the file the cuts are taken at last, and nothing else."""
+    numbers = np.random.default_rng(0).permutation(len(mesh.V))
+    vertex = np.argsort(numbers)
+    lines: list[str] = []
+    for _ in range(20):
+        paths = [mesh.V[vertex[list(map(int, line.split()))]] for line in lines]
+        cut = cut_along(mesh, paths, numbers=numbers)
+        try:
+            seams = seams_by_hand(mesh, cut, limits, numbers=numbers)
+            break
+        except (InputError, RefusedError) as fault:
+            said = str(fault)
+        lines += re.findall(r"such as along ([\d and]+), or add --complete", said)[0].split(" and ")
+    np.testing.assert_array_equal(seams.cut, cut)
+    assert lines and len(seams.pieces) == pieces
+
+
+def test_errors_name_the_cuts_about_the_piece() -> None:
+    mesh = bumpy()
+    half = mesh.V[mesh.F].mean(axis=1)[:, 2] > 0
+    EF = mesh.topology.EF
+    with pytest.raises(RefusedError) as fault:
+        seams_by_hand(mesh, half[EF[:, 0]] != half[EF[:, 1]], Limits(mean=4.01))
+    named = re.search(
+        r"piece 1 \(\d+ faces within the cuts (\d+)-(\d+), (\d+)-(\d+), (\d+)-(\d+) and \d+ more\) has mean d", str(fault.value)
+    )
+    assert named
+    pairs = np.array(named.groups(), dtype=int).reshape(-1, 2)
+    edges = mesh.topology.edge_ids(pairs)
+    assert (edges >= 0).all() and (half[EF[edges, 0]] != half[EF[edges, 1]]).all()
+    assert (pairs[:-1, 1] == pairs[1:, 0]).all()  # in a row
+
+
+def test_one_edge_alone_opens_nothing_and_is_named() -> None:
+    mesh = Mesh(*shapes.sphere(1))
+    with pytest.raises(InputError, match=r"closed \(a cut of one edge alone, 0-12, opens nothing\)"):
+        seams_by_hand(mesh, cut_along(mesh, [mesh.V[[0, 12]]]), Limits())
+
+
+def test_a_path_without_length_is_told() -> None:
+    mesh = square()
+    with pytest.raises(InputError, match="cut 1: all its points are vertex 40, so it has no length; give a path of two vertices or more"):
+        cut_along(mesh, [mesh.V[[40, 40, 40]]])
+
+
+def test_vertices_have_the_numbers_of_the_file() -> None:
+    mesh = square()
+    shuffled = np.random.default_rng(1).permutation(len(mesh.V))
+    file = Mesh(np.vstack([mesh.V[shuffled], [9, 9, 9]]), np.argsort(shuffled)[mesh.F])
+    np.testing.assert_array_equal(file.V[numbers_in(file, mesh)], mesh.V)
+
+
+@pytest.mark.parametrize("aim", ["usual", "fewest"])
+def test_completed_keeps_all_that_was_cut(aim) -> None:
+    mesh = bumpy()
+    mine = cut_along(mesh, [mesh.V[[0, 12, 42, 1]]])
+    seams = completed(mesh, mine, Limits(), aim=aim)
+    assert mine.any() and seams.cut[mine].all() and (seams.cut & ~mine).any()
+    assert all(verdict.accepted for _, verdict in seams.pieces)
