@@ -22,7 +22,16 @@ from skinfab.fingertip.array.least_squares import normal_equations, solve
 from skinfab.fingertip.array.peak import find, highest, without_nan
 from skinfab.fingertip.array.response import add_force, normal_window
 from skinfab.fingertip.array.simulator import Rubber
-from skinfab.tolerances import MATCH_APART, MATCH_MM, MATCH_UNEXPLAINED, NEWTON_TACTELS, PEAK_FLAT, PEAK_OTHER
+from skinfab.tolerances import (
+    MATCH_APART,
+    MATCH_MM,
+    MATCH_UNEXPLAINED,
+    NEWTON_TACTELS,
+    PEAK_FLAT,
+    SEVERAL_LIGHT,
+    SEVERAL_OTHER,
+    SEVERAL_TACTELS,
+)
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
@@ -294,23 +303,42 @@ class Matcher:
             add_force(out, (each.force_n, 0.0, 0.0), place, g.pitch, g.half, g.skin, m.rubber.poisson)
         return out * m.gains / m.rubber.young
 
-    def several(self, Z: FloatArray) -> tuple[Contact, ...]:
+    def several(self, Z: FloatArray, *, enough: float = 0.0) -> tuple[Contact, ...]:
         """Up to four contacts, the strongest first: each found in what the others leave, over and over.
 
-        Two that have one peak between them are told as in a call; the others must lie two tactels apart.
+        Two that have one peak between them are told as in a call. Light ones count only apart from all others: beside a wide contact,
+        which no few points explain, they are what the strong ones leave of it.
+
+        Parameters
+        ----------
+        Z : (rings, stripes) float
+        enough : float
+            Sum of squares that may be left: no more contacts are looked for.
         """
         found = list(self(Z).contacts)
-        floor = max(self._floor, PEAK_OTHER * highest(Z))
+        floor = max(self._floor, SEVERAL_OTHER * highest(Z))
         while found and len(found) < _MOST:
             rest = Z - self.predicted(found)
-            if not highest(rest) > floor:
+            if not highest(rest) > floor or float(np.nansum(rest**2)) <= enough:
                 break
             found.append(self._contact(*self.one(rest)[:3]))
             for _ in range(_ROUNDS):
                 for k in range(len(found)):
                     rest = Z - self.predicted(found[:k] + found[k + 1 :])
                     found[k] = self._contact(*self.one(rest)[:3])
-        return tuple(sorted((each for each in found if each.force_n > 0), key=lambda c: -c.force_n))
+        light = SEVERAL_LIGHT * max((each.force_n for each in found), default=0.0)
+        apart = [
+            one
+            for one in found
+            if one.force_n >= light or all(self.tactels(one, two) >= SEVERAL_TACTELS for two in found if two is not one)
+        ]
+        return tuple(sorted((each for each in apart if each.force_n > 0), key=lambda c: -c.force_n))
+
+    def tactels(self, one: Contact, two: Contact) -> float:
+        """How far apart two contacts lie, tactels."""
+        g = self.model.geometry
+        along, around = one.axial_mm - two.axial_mm, g.core_radius * math.remainder(one.angle_rad - two.angle_rad, math.tau)
+        return math.hypot(along / g.pitch[0], around / g.pitch[1])
 
     def _contact(self, x: float, s: float, force: float) -> Contact:
         return Contact(float(x), math.remainder(float(s) / self.model.geometry.core_radius, math.tau), float(force))

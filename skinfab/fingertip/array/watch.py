@@ -192,7 +192,7 @@ class Analyser:
         if line is not None and (not explains or self._lines.better(Z, line, spot)) and _left(Z, self._lines.predicted(line)) <= allowed:
             return _Found("line", (Contact(line.axial_mm, line.angle_rad, line.force_n),), line=line)
         if not explains:
-            several = self._matcher.several(Z)
+            several = self._matcher.several(Z, enough=allowed)
             if len(several) > 1 and _left(Z, self._matcher.predicted(several)) <= allowed:
                 return _Found("several", several)
             spot = self._spots.patch(Z, (patch.axial_mm, patch.angle_rad, patch.force_n), pulled=True)
