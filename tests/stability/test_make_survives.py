@@ -4,6 +4,7 @@ import os
 import re
 import resource
 import runpy
+import shutil
 import signal
 import subprocess
 import sys
@@ -144,18 +145,28 @@ def test_full_disk(tmp_path: Path) -> None:
         subprocess.run(["umount", disk], check=True)
 
 
-def test_an_earlier_result_survives_a_failed_run(tmp_path: Path) -> None:
-    out = tmp_path / "out"
-    assert main(["make", str(ROOT / "meshes/cube.obj"), "-o", str(out)]) == 0
+@pytest.fixture(scope="module")
+def two_pieces(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """What is made of the cube with a cut round one side."""
+    folder = tmp_path_factory.mktemp("cube")
+    (folder / "cuts.txt").write_text("0 1\n1 3\n3 2\n2 0\n")
+    words = ["make", str(ROOT / "meshes/cube.obj"), "--cuts", str(folder / "cuts.txt"), "--complete", "-o", str(folder / "out")]
+    assert main(words) == 0
+    assert len(results.read_report(folder / "out")["pieces"]) == 2
+    return folder / "out"
+
+
+def test_an_earlier_result_survives_a_failed_run(two_pieces: Path, tmp_path: Path) -> None:
+    out = two_pieces
     before = {p: p.read_bytes() for p in out.rglob("*") if p.is_file()}
     (tmp_path / "bad.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n")
     assert main(["make", str(tmp_path / "bad.obj"), "-o", str(out)]) == 1
     assert {p: p.read_bytes() for p in out.rglob("*") if p.is_file()} == before
 
 
-def test_a_second_run_leaves_no_stale_piece(tmp_path: Path) -> None:
+def test_a_second_run_leaves_no_stale_piece(two_pieces: Path, tmp_path: Path) -> None:
     out = tmp_path / "out"
-    assert main(["make", str(ROOT / "meshes/cylinder.obj"), "-o", str(out)]) == 0
+    shutil.copytree(two_pieces, out)
     (out / "gcode/mine.gcode").write_text("; my own\n")
     assert main(["make", str(ROOT / "meshes/cube.obj"), "-o", str(out)]) == 0
     listed = {entry["file"] for part in ("gcode", "moulds") for entry in results.read_report(out)[part]}
