@@ -36,7 +36,7 @@ SAME = 0.95
 #: 6 s apart at 0.16.
 MIN_EXPLAINED = 0.5
 #: So many samples are timed, one by one.
-_TIMED = 2000
+_TIMED = 500
 
 
 @dataclass(frozen=True)
