@@ -5,15 +5,18 @@ from __future__ import annotations
 import argparse
 import json
 import math
-import signal
+import threading
 import time
+from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from skinfab.cli import steps
+from skinfab.cli.ending import ended_by_signals
 
 if TYPE_CHECKING:
     from skinfab.fingertip.optical.images import ImageSource
+    from skinfab.fingertip.optical.source import EdgeSource
     from skinfab.readout.frame import Frame
 
 FILES = ("edges.csv", "optical.png", "result.json")
@@ -30,7 +33,9 @@ def add_options(p: argparse.ArgumentParser) -> None:
     p.add_argument("--model", metavar="MODEL.npz", type=Path, required=True, help="from skinfab optical train, of this fingertip")
     p.add_argument("--rest", metavar="IMAGE", type=Path, help="of the untouched fingertip now: its camera has moved since the training")
     p.add_argument("--rate", metavar="HZ", type=steps.positive, help="pictures a second of a folder (default: 30)")
-    p.add_argument("--seconds", metavar="S", type=steps.positive, help="of a camera: end after so long (default: at Ctrl-C)")
+    p.add_argument(
+        "--seconds", metavar="S", type=steps.positive, help="of a camera: end so long after its first picture (default: at Ctrl-C)"
+    )
     p.add_argument("-o", "--output", metavar="DIR", type=Path, required=True, help="folder for the table of edges, result and figure")
     p.add_argument("--json", action="store_true", help="print the result as one JSON object and nothing else")
     p.set_defaults(run=run)
@@ -41,13 +46,10 @@ def run(args: argparse.Namespace) -> int:
     from dataclasses import replace
 
     from skinfab.errors import InputError
-    from skinfab.files import atomic_write, require_apart
-    from skinfab.fingertip.optical.edge import Edge
-    from skinfab.fingertip.optical.figure import draw_run
+    from skinfab.files import require_apart
     from skinfab.fingertip.optical.model_file import load_edge
     from skinfab.fingertip.optical.picture import read_picture
     from skinfab.fingertip.optical.source import EdgeSource
-    from skinfab.staging import staged_folder
 
     if (args.images is None) == (args.camera is None):
         args.wrong_usage("give IMAGES or --camera N, one of them")
@@ -60,17 +62,16 @@ def run(args: argparse.Namespace) -> int:
     if args.rest is not None:
         model = replace(model, pins=model.pins.seated(read_picture(args.rest)[0]))
     source = EdgeSource(_images(args), model)
-    felt, spent = _felt(args, source)
-    if not felt:
-        raise InputError(f"{source.images.name} gave no picture that can be read; {'; '.join(source.images.notes) or 'look at it'}")
-    rows = (frame.values.tolist() for _, frame in felt)
-    edges = [Edge(offset, math.radians(angle), depth, confidence) for offset, depth, angle, confidence in rows]
-    simulated = source.stream.simulated or bool(made_from.get("simulated"))
-    result = _facts(source.images, felt, spent, simulated=simulated)
-    with staged_folder(args.output) as folder:
-        atomic_write(folder / "edges.csv", _table(felt, simulated))
-        atomic_write(folder / "result.json", json.dumps(result, indent=1, allow_nan=False) + "\n")
-        draw_run([frame.device_time for _, frame in felt], edges, folder / "optical.png", title=source.images.name, simulated=simulated)
+    # Ctrl-C is the way to end a camera: what came before it is written, also where it is pressed again meanwhile.
+    with ended_by_signals() if args.camera is not None else nullcontext(threading.Event()) as stop:
+        felt, spent = _felt(args, source, stop)
+        if not felt and stop.is_set():
+            raise KeyboardInterrupt
+        if not felt:
+            raise InputError(f"{source.images.name} gave no picture that can be read; {'; '.join(source.images.notes) or 'look at it'}")
+        simulated = source.stream.simulated or bool(made_from.get("simulated"))
+        result = _facts(source.images, felt, spent, simulated=simulated)
+        _write(args.output, felt, result)
     if args.json:
         print(json.dumps(result, allow_nan=False))
         return 0
@@ -85,7 +86,8 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _images(args: argparse.Namespace) -> ImageSource:
-    from skinfab.fingertip.optical.images import RATE_HZ, CameraImages, FolderImages, VideoImages
+    from skinfab.fingertip.optical.camera import CameraImages
+    from skinfab.fingertip.optical.images import RATE_HZ, FolderImages, VideoImages
 
     if args.camera is not None:
         if args.rate is not None:
@@ -98,24 +100,36 @@ def _images(args: argparse.Namespace) -> ImageSource:
     return VideoImages(args.images)
 
 
-def _felt(args: argparse.Namespace, source: Any) -> tuple[list[tuple[str, Frame]], list[float]]:
+def _felt(args: argparse.Namespace, source: EdgeSource, stop: threading.Event) -> tuple[list[tuple[str, Frame]], list[float]]:
     """Every picture's name and frame (not the picture: a camera would fill the memory), and how long each took from picture to edge, ms."""
+    from skinfab.errors import InputError
+    from skinfab.fingertip.optical.camera import STILL_S
+
     felt: list[tuple[str, Frame]] = []
     spent: list[float] = []
-    end = time.monotonic() + (args.seconds or math.inf)
+    told = args.camera is not None and not args.json
     with source:
-        try:
-            while not source.images.ended and (left := end - time.monotonic()) > 0:
-                if (frame := source.read(min(left, _WAIT_S))) is None:
-                    continue
-                spent.append(source.last_ms)
-                felt.append((source.last.name, frame))
-                if args.camera is not None and not args.json:
-                    print(_words(frame), flush=True)
-        except KeyboardInterrupt:
-            if args.camera is None:
-                raise
-            signal.setitimer(signal.ITIMER_REAL, 0)  # the way to end it: it has got through, and is not to come a second time
+        end, warn = math.inf, time.monotonic() + STILL_S
+        while not (source.images.ended or stop.is_set()) and (left := end - time.monotonic()) > 0:
+            try:
+                frame = source.read(min(left, _WAIT_S))
+            except InputError as fault:
+                if not felt:
+                    raise
+                source.images.notes.append(f"{fault}; what came before is kept")
+                break
+            if frame is None or source.last is None:
+                if told and time.monotonic() > warn:
+                    steps.say([f"{source.images.name} has given no picture for {STILL_S:g} s"])
+                    warn = math.inf
+                continue
+            if not felt:
+                end = time.monotonic() + (args.seconds or math.inf)  # a camera may take seconds to its first one
+            spent.append(source.last_ms)
+            felt.append((source.last.name, frame))
+            warn = time.monotonic() + STILL_S
+            if told:
+                print(_words(frame), flush=True)
     return felt, spent
 
 
@@ -153,6 +167,21 @@ def _facts(images: ImageSource, felt: list[tuple[str, Frame]], spent: list[float
         "ms": {"median": sorted(spent)[len(spent) // 2], "worst": max(spent)},
         "notes": notes,
     }
+
+
+def _write(target: Path, felt: list[tuple[str, Frame]], result: dict[str, Any]) -> None:
+    from skinfab.files import atomic_write
+    from skinfab.fingertip.optical.edge import Edge
+    from skinfab.fingertip.optical.figure import draw_run
+    from skinfab.staging import staged_folder
+
+    rows = (frame.values.tolist() for _, frame in felt)
+    edges = [Edge(offset, math.radians(angle), depth, confidence) for offset, depth, angle, confidence in rows]
+    times, simulated = [frame.device_time for _, frame in felt], result["simulated"]
+    with staged_folder(target) as folder:
+        atomic_write(folder / "edges.csv", _table(felt, simulated))
+        atomic_write(folder / "result.json", json.dumps(result, indent=1, allow_nan=False) + "\n")
+        draw_run(times, edges, folder / "optical.png", title=result["source"], simulated=simulated)
 
 
 def _table(felt: list[tuple[str, Frame]], simulated: bool) -> str:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import json
 import sys
-import threading
 import time
 from contextlib import ExitStack, contextmanager
 from dataclasses import asdict
@@ -13,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from skinfab.cli import steps
+from skinfab.cli.ending import ended_by_signals
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -86,7 +86,7 @@ def run(args: argparse.Namespace) -> int:
                 steps.say(wiring_notes)
         recorder = opened.enter_context(Recorder(args.output, stream))
         began = time.time()
-        with _shown(quiet=args.json, source=source) as show, _ended_by_signals() as stop:
+        with _shown(quiet=args.json, source=source) as show, ended_by_signals() as stop:
             record(source, recorder, seconds=args.seconds, told=show, stop=stop)
         counts, gone = asdict(source.counts), outages(source, began, time.time())
         fault, doubt = (source.fault, source.doubt) if isinstance(source, SerialPort) else ("", "")
@@ -139,24 +139,6 @@ def _source(args: argparse.Namespace) -> SerialPort | PacedFrames:
     from skinfab.readout.serial_port import BAUD, SerialPort
 
     return SerialPort(args.port, baud=args.baud or BAUD)
-
-
-@contextmanager
-def _ended_by_signals() -> Iterator[threading.Event]:
-    """Ctrl-C is the way to end a recording: it ends it between two frames, not in the midst of one."""
-    import signal
-
-    stop = threading.Event()
-    before = {s: signal.getsignal(s) for s in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)}
-    # What is ignored (nohup) stays so; and only the main thread may say what a signal does.
-    ours = [s for s, handler in before.items() if callable(handler) and threading.current_thread() is threading.main_thread()]
-    try:
-        for s in ours:
-            signal.signal(s, lambda number, frame: stop.set())
-        yield stop
-    finally:
-        for s in ours:
-            signal.signal(s, before[s])
 
 
 @contextmanager

@@ -4,9 +4,12 @@ import contextlib
 import csv
 import io
 import json
+import os
 import shutil
+import signal
+import time
 import weakref
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import cv2
@@ -185,6 +188,84 @@ def test_rest_is_for_a_camera_that_has_moved(made: Path, tmp_path: Path, capsys:
     cv2.imwrite(str(tmp_path / "rest.png"), np.zeros((240, 240), np.uint8))
     assert main([*words, "--rest", str(tmp_path / "rest.png")]) == 1
     assert "127 of 127 pins are not found in the image at rest" in capsys.readouterr().err
+
+
+class Camera:
+    """In OpenCV's place: simulated contacts; Ctrl-C is pressed as the `press`-th is taken, the `small`-th is of another size, the first is late."""
+
+    def __init__(self, folder: Path, count: int, *, press: int = -1, small: int = -1, late_s: float = 0.0) -> None:
+        self.folder, self.count, self.press, self.small, self.late_s, self.taken = folder, count, press, small, late_s, 0
+
+    def isOpened(self) -> bool:
+        return True
+
+    def get(self, setting: int) -> float:
+        return 30.0
+
+    def release(self) -> None:
+        """Nothing to give back."""
+
+    def read(self) -> tuple[bool, np.ndarray | None]:
+        time.sleep(0.02 if self.taken else self.late_s)  # slower than they are read
+        if self.taken == self.press:
+            time.sleep(0.3)
+            os.kill(os.getpid(), signal.SIGINT)
+            time.sleep(0.1)
+        if self.taken == self.count:
+            return False, None
+        self.taken += 1
+        image = cv2.imread(str(self.folder / f"{self.taken:05d}.png"), cv2.IMREAD_GRAYSCALE)
+        return True, image[:200] if self.taken - 1 == self.small else image
+
+
+@pytest.fixture
+def from_camera(made: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[..., int]]:
+    def run(camera: Camera, *words: str) -> int:
+        monkeypatch.setattr(cv2, "VideoCapture", lambda what, backend, settings: camera)
+        model = str(made / "train/model.npz")
+        return main(["optical", "run", "--camera", "0", "--model", model, "-o", str(tmp_path / "out"), *words])
+
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield run
+    signal.signal(signal.SIGINT, before)
+
+
+def test_ctrl_c_ends_a_camera_and_a_second_one_does_not_lose_what_it_saw(
+    made: Path, tmp_path: Path, from_camera: Callable[..., int], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def drawing(times: list[float], edges: object, path: Path, **words: object) -> None:
+        signal.raise_signal(signal.SIGINT)
+        path.write_bytes(b"")
+
+    monkeypatch.setattr("skinfab.fingertip.optical.figure.draw_run", drawing)
+    assert from_camera(Camera(made / "sim/images", 90, press=4), "--json") == 0
+    said = json.loads(capsys.readouterr().out)
+    assert said["pictures"] == len(rows(tmp_path / "out/edges.csv")) == 4 and said["notes"] == []
+    assert sorted(each.name for each in (tmp_path / "out").iterdir()) == RUN
+
+
+def test_ctrl_c_before_the_first_picture_is_an_interrupt(
+    made: Path, tmp_path: Path, from_camera: Callable[..., int], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert from_camera(Camera(made / "sim/images", 0, press=0)) == 130
+    assert "interrupted" in capsys.readouterr().err and not (tmp_path / "out").exists()
+
+
+def test_seconds_count_from_the_first_picture(made: Path, from_camera: Callable[..., int], capsys: pytest.CaptureFixture[str]) -> None:
+    assert from_camera(Camera(made / "sim/images", 90, late_s=0.4), "--seconds", "0.1", "--json") == 0
+    assert 1 <= json.loads(capsys.readouterr().out)["pictures"] < 90
+
+
+def test_a_camera_that_goes_or_changes_is_told_and_what_came_before_is_kept(
+    made: Path, tmp_path: Path, from_camera: Callable[..., int], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert from_camera(Camera(made / "sim/images", 5)) == 0
+    assert "note: camera 0 gave no more after 0." in capsys.readouterr().err
+    assert from_camera(Camera(made / "sim/images", 4, small=3), "--json") == 0
+    said = json.loads(capsys.readouterr().out)
+    assert said["pictures"] == 3 and "240 x 200 pixels" in said["notes"][0] and said["notes"][0].endswith("; what came before is kept")
+    assert from_camera(Camera(made / "sim/images", 1, small=0)) == 1
+    assert "240 x 200 pixels" in capsys.readouterr().err
 
 
 def test_wrong_use_says_what_is_right(made: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -1,14 +1,10 @@
-"""Images as they come: from a folder, a video or a live camera, with the times and counts that a readout source has."""
+"""Images as they come from a folder or a video, with the times and counts that a readout source has."""
 
 from __future__ import annotations
 
-import math
 import re
-import threading
-import time
 from abc import ABC, abstractmethod
-from collections import deque
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from types import TracebackType
@@ -24,9 +20,7 @@ from skinfab.readout.source import Counts, HostClock
 
 #: A folder's pictures say no time: so many count as a second, which is a plain camera's rate.
 RATE_HZ = 30.0
-#: Pictures of a camera that wait to be read; older ones give way and are counted as lost.
-WAITING = 4
-#: A step of a video's or camera's time beyond so many of its usual ones is pictures lost.
+#: A step of a video's time beyond so many of its usual ones is pictures lost.
 _STEP = 1.5
 
 
@@ -79,7 +73,7 @@ class ImageSource(Protocol):
         ...
 
 
-class _Pictures(ABC):
+class Pictures(ABC):
     """What every image source is alike in."""
 
     def __init__(self, name: str, rate_hz: float) -> None:
@@ -108,7 +102,7 @@ class _Pictures(ABC):
     def read(self, timeout: float | None = None) -> Picture | None: ...
 
 
-class FolderImages(_Pictures):
+class FolderImages(Pictures):
     """The pictures of a folder, in the order of the numbers in their names.
 
     Files that are no whole picture are counted as bad and named in `notes`.
@@ -192,7 +186,7 @@ def _natural(path: Path) -> list[tuple[int, int | str]]:
     return [(0, int(part)) if part.isdecimal() else (1, part) for part in re.split(r"(\d+)", path.stem) if part]
 
 
-class VideoImages(_Pictures):
+class VideoImages(Pictures):
     """The pictures of a video file; what is missing by its own times, or cut off, is counted as lost.
 
     Parameters
@@ -210,13 +204,13 @@ class VideoImages(_Pictures):
         if not self._path.is_file():
             raise InputError(f"{path}: no such file; give a video, a folder of pictures or a camera's number")
         super().__init__(self._path.name, 0.0)
-        capture = _opened(str(self._path), f"{path} is no video that can be read; give AVI, MP4 or MKV in a usual coding")
+        capture = _open_file(self._path, f"{path} is no video that can be read; give AVI, MP4 or MKV in a usual coding")
         self.rate_hz = float(capture.get(cv2.CAP_PROP_FPS)) or RATE_HZ
         capture.release()
 
     def open(self) -> Self:
         """Begin from the first one."""
-        self._capture = _opened(str(self._path), f"{self._path} cannot be read any more; look whether it is still there")
+        self._capture = _open_file(self._path, f"{self._path} cannot be read any more; look whether it is still there")
         self._all = int(self._capture.get(cv2.CAP_PROP_FRAME_COUNT))
         self._clock, self._sequence, self._time = HostClock(), -1, -1 / self.rate_hz
         self.counts, self.ended = Counts(), False
@@ -244,86 +238,32 @@ class VideoImages(_Pictures):
         self._sequence += 1 + gone
         self._time = at
         self.counts = replace(self.counts, frames=self.counts.frames + 1, lost=self.counts.lost + gone)
-        return Picture(_grey(raw), f"{self._sequence + 1}", at, self._clock.now(), self._sequence)
+        return Picture(grey(raw), f"{self._sequence + 1}", at, self._clock.now(), self._sequence)
 
 
-class CameraImages(_Pictures):
-    """A live camera. A thread takes its pictures as they come; those that nobody reads in time give way and are counted as lost.
+def _open_file(path: Path, wrong: str) -> Any:
+    """A video; where there is FFmpeg no other reader is asked, as OpenCV's own one prints a line on an AVI that is cut off."""
+    known = cv2.CAP_FFMPEG in cv2.videoio_registry.getStreamBackends()
+    return open_capture(str(path), wrong, backend=cv2.CAP_FFMPEG if known else cv2.CAP_ANY)
 
-    Parameters
-    ----------
-    camera : int or str
-        Its number from 0, or an address that OpenCV opens.
+
+def open_capture(what: int | str, wrong: str, *, backend: int = cv2.CAP_ANY, settings: Sequence[int] = ()) -> Any:
+    """A capture of OpenCV; `settings` are its properties and values in turn.
 
     Raises
     ------
     InputError
-        On opening: there is no such camera.
+        It cannot be opened; in the words of `wrong`.
     """
-
-    def __init__(self, camera: int | str) -> None:
-        super().__init__(f"camera {camera}", RATE_HZ)
-        self._camera = camera
-
-    def open(self) -> Self:
-        """Begin to take pictures."""
-        wrong = f"there is no {self.name}, or another program has it; cameras are numbered from 0"
-        self._capture = _opened(self._camera, wrong)
-        self.rate_hz = float(self._capture.get(cv2.CAP_PROP_FPS)) or RATE_HZ
-        self._waiting: deque[Picture] = deque()
-        self._come, self._stop = threading.Condition(), False
-        self.counts, self.ended, self._done = Counts(), False, False
-        self._thread = threading.Thread(target=self._take, name=self.name, daemon=True)
-        self._thread.start()
-        return self
-
-    def close(self) -> None:
-        """Take no more."""
-        self._stop = True
-        self._thread.join()
-        self._capture.release()
-        self.ended = True
-
-    def _take(self) -> None:
-        clock, sequence, begun = HostClock(), 0, math.nan
-        while not self._stop:
-            whole, raw = self._capture.read()
-            now = time.monotonic()
-            begun = now if math.isnan(begun) else begun
-            with self._come:
-                if not whole:
-                    break
-                if len(self._waiting) == WAITING:
-                    self._waiting.popleft()
-                    self.counts = replace(self.counts, lost=self.counts.lost + 1)
-                self._waiting.append(Picture(_grey(raw), f"{sequence + 1}", now - begun, clock.at(now), sequence))
-                self._come.notify()
-            sequence += 1
-        with self._come:
-            self._done = True
-            self._come.notify()
-
-    def read(self, timeout: float | None = None) -> Picture | None:
-        """The next one that has not given way; None after `timeout` seconds without one, or when the camera is gone."""
-        with self._come:
-            self._come.wait_for(lambda: self._waiting or self._done, timeout)
-            if not self._waiting:
-                self.ended = self._done
-                return None
-            self.counts = replace(self.counts, frames=self.counts.frames + 1)
-            return self._waiting.popleft()
-
-
-def _opened(what: int | str, wrong: str) -> Any:
-    """A capture of OpenCV."""
     with opencv_silent():
-        capture = cv2.VideoCapture(what)
+        capture = cv2.VideoCapture(what, backend, list(settings))
     if not capture.isOpened():
         capture.release()
         raise InputError(wrong)
     return capture
 
 
-def _grey(raw: Any) -> Image:
+def grey(raw: Any) -> Image:
+    """A picture of OpenCV, (h, w) or (h, w, 3), as (h, w) uint8."""
     image = raw if raw.ndim == 2 else cv2.cvtColor(raw, cv2.COLOR_BGR2GRAY)
     return np.ascontiguousarray(image, dtype=np.uint8)

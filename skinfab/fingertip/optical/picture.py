@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import os
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 
 import cv2
@@ -19,17 +21,35 @@ SUFFIXES = (".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".pgm")
 _SIMULATED, _HEAD = b"simulated: true", 4096
 
 
+@dataclass
+class _Hush:
+    """OpenCV has one level of its log for all threads: who comes first sets it, and who goes last gives it back."""
+
+    lock: threading.Lock
+    users: int = 0
+    before: int = 0
+
+
+_HUSH = _Hush(threading.Lock())
+
+
 @contextmanager
 def opencv_silent() -> Iterator[None]:
-    """OpenCV's own warnings, and those of the video reader in it, say nothing that the error does not."""
+    """OpenCV's own warnings, and those of the video reader in it, say nothing that the error does not; in several threads at once, too."""
     log = cv2.utils.logging
-    before = log.getLogLevel()
-    log.setLogLevel(log.LOG_LEVEL_SILENT)
-    os.environ.setdefault("OPENCV_FFMPEG_LOGLEVEL", "-8")
+    with _HUSH.lock:
+        if _HUSH.users == 0:
+            _HUSH.before = log.getLogLevel()
+            log.setLogLevel(log.LOG_LEVEL_SILENT)
+            os.environ.setdefault("OPENCV_FFMPEG_LOGLEVEL", "-8")
+        _HUSH.users += 1
     try:
         yield
     finally:
-        log.setLogLevel(before)
+        with _HUSH.lock:
+            _HUSH.users -= 1
+            if _HUSH.users == 0:
+                log.setLogLevel(_HUSH.before)
 
 
 def read_picture(path: str | Path) -> tuple[Image, bool]:

@@ -15,8 +15,9 @@ from typing import Self
 import numpy as np
 
 from skinfab.errors import InputError
+from skinfab.fingertip.optical.camera import CameraImages
 from skinfab.fingertip.optical.edge import Edge
-from skinfab.fingertip.optical.images import CameraImages, FolderImages, ImageSource, Picture
+from skinfab.fingertip.optical.images import FolderImages, ImageSource, Picture
 from skinfab.fingertip.optical.regress import EdgeModel
 from skinfab.readout.frame import Channel, Frame, Stream
 from skinfab.readout.source import Counts, HostClock, StaleError

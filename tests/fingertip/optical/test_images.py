@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from skinfab.errors import InputError
-from skinfab.fingertip.optical.images import WAITING, CameraImages, FolderImages, VideoImages
+from skinfab.fingertip.optical.camera import WAITING, CameraImages
+from skinfab.fingertip.optical.images import FolderImages, VideoImages
 from skinfab.fingertip.optical.labelled import labelled
 from skinfab.fingertip.optical.model_file import load_edge, save_edge
 from skinfab.fingertip.optical.picture import read_picture
@@ -147,7 +148,7 @@ def test_what_is_worked_out_once_is_there_before_the_first_picture(model: EdgeMo
         assert {"_owner", "_near"} <= fresh.pins.__dict__.keys() and {"_support_square", "_scale"} <= fresh.__dict__.keys()
 
 
-def test_opencv_says_nothing_of_its_own(pressed: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+def test_opencv_says_nothing_of_its_own(pressed: Path, video: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     whole = (pressed / "0.png").read_bytes()
     (tmp_path / "cut.png").write_bytes(whole[: len(whole) // 2])
     writer = cv2.VideoWriter(str(tmp_path / "whole.mp4"), cv2.VideoWriter_fourcc(*"mp4v"), RATE, (64, 64), False)
@@ -155,10 +156,13 @@ def test_opencv_says_nothing_of_its_own(pressed: Path, tmp_path: Path, capfd: py
         writer.write(numbered(k))
     writer.release()
     (tmp_path / "cut.mp4").write_bytes((tmp_path / "whole.mp4").read_bytes()[:1000])
+    (tmp_path / "cut.avi").write_bytes(video.read_bytes()[:1000])
     with pytest.raises(InputError, match="no picture that can be read"):
         read_picture(tmp_path / "cut.png")
     with pytest.raises(InputError, match="no video that can be read"):
         VideoImages(tmp_path / "cut.mp4")
+    with pytest.raises(InputError, match="no video that can be read"):
+        VideoImages(tmp_path / "cut.avi")
     assert capfd.readouterr().err == ""
 
 
