@@ -130,11 +130,13 @@ def test_results_do_not_go_among_the_pictures(made: Path, capsys: pytest.Capture
 
 def test_a_folder_and_a_video_are_read(made: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     shutil.copytree(made / "sim/images", tmp_path / "images")
-    (tmp_path / "images/00007.png").write_bytes(b"")
+    for name in ("00007.png", "00012.png"):
+        (tmp_path / "images" / name).write_bytes(b"")
     model = ["--model", str(made / "train/model.npz")]
     assert main(["optical", "run", str(tmp_path / "images"), *model, "-o", str(tmp_path / "folder"), "--json"]) == 0
     said = json.loads(capsys.readouterr().out)
-    assert said["simulated"] and said["pictures"] == 99 and said["unreadable"] == 1 and "00007.png" in " ".join(said["notes"])
+    assert said["simulated"] and said["pictures"] == 98 and said["unreadable"] == 2
+    assert sum("00007.png is no picture" in note and note.endswith("passed over, as was one more") for note in said["notes"]) == 1
     assert sorted(each.name for each in (tmp_path / "folder").iterdir()) == RUN
     felt, true = rows(tmp_path / "folder/edges.csv"), rows(made / "sim/targets.csv")
     assert abs(float(felt[0]["offset_mm"]) - float(true[0]["offset_mm"])) < 1 and felt[0]["simulated"] == "1"
@@ -191,7 +193,7 @@ def test_rest_is_for_a_camera_that_has_moved(made: Path, tmp_path: Path, capsys:
 
 
 class Camera:
-    """In OpenCV's place: simulated contacts; Ctrl-C is pressed as the `press`-th is taken, the `small`-th is of another size, the first is late."""
+    """In OpenCV's place: simulated contacts, the first one late; Ctrl-C comes with the `press`-th, the `small`-th has another size."""
 
     def __init__(self, folder: Path, count: int, *, press: int = -1, small: int = -1, late_s: float = 0.0) -> None:
         self.folder, self.count, self.press, self.small, self.late_s, self.taken = folder, count, press, small, late_s, 0

@@ -105,7 +105,7 @@ class Pictures(ABC):
 class FolderImages(Pictures):
     """The pictures of a folder, in the order of the numbers in their names.
 
-    Files that are no whole picture are counted as bad and named in `notes`.
+    Files that are no whole picture are counted as bad; the first of them is named in `notes`, with their number.
 
     Parameters
     ----------
@@ -134,6 +134,7 @@ class FolderImages(Pictures):
     def open(self) -> Self:
         """Begin from the first one."""
         self._next, self._clock = 0, HostClock()
+        self._passed: dict[str, tuple[str, int]] = {}
         self.counts, self.ended = Counts(), False
         self.notes.clear()
         return self
@@ -151,7 +152,7 @@ class FolderImages(Pictures):
                 image, _ = read_picture(path)
             except InputError as fault:
                 self.counts = replace(self.counts, bad=self.counts.bad + 1)
-                self.notes.append(f"{fault}; it was passed over")
+                self._note("unreadable", str(fault))
                 continue
             self.counts = replace(self.counts, frames=self.counts.frames + 1)
             return Picture(image, path.name, k / self.rate_hz, self._clock.now(), k)
@@ -162,7 +163,23 @@ class FolderImages(Pictures):
         """Count the last picture among the bad ones after all, and say why."""
         self.counts = replace(self.counts, frames=self.counts.frames - 1, bad=self.counts.bad + 1)
         height, width = picture.image.shape
-        self.notes.append(f"{picture.name} is of {width} x {height} pixels, {why}; it was passed over")
+        self._note("size", f"{picture.name} is of {width} x {height} pixels, {why}")
+
+    def _note(self, kind: str, what: str) -> None:
+        """Name the first of a kind and count the others: of a folder for another model there may be ten thousand."""
+        first, count = self._passed.get(kind, (what, 0))
+        self._passed[kind] = first, count + 1
+        self.notes[:] = [f"{said}; it was passed over{_more(count - 1)}" for said, count in self._passed.values()]
+
+
+def _more(count: int) -> str:
+    """
+    Examples
+    --------
+    >>> _more(0), _more(1), _more(2)
+    ('', ', as was one more', ', as were 2 others')
+    """
+    return "" if count == 0 else ", as was one more" if count == 1 else f", as were {count} others"
 
 
 def read_any_simulated(files: list[Path]) -> bool:
