@@ -129,9 +129,9 @@ def train(args: argparse.Namespace) -> int:
     import numpy as np
 
     from skinfab.files import require_apart
-    from skinfab.fingertip.force.gravity_model import learn_hand, left_over, save_hand
+    from skinfab.fingertip.force.gravity_model import left_over, save_hand
     from skinfab.fingertip.force.logs import once
-    from skinfab.fingertip.force.weighings import require_alike
+    from skinfab.fingertip.force.weighings import learn_alike
     from skinfab.staging import staged_folder
 
     require_apart(args.output, _TRAINED, args.logs)
@@ -140,8 +140,7 @@ def train(args: argparse.Namespace) -> int:
     read = [(log, poses) for log, poses in read if any(log is each for each in kept)]
     weighings = [poses for _, poses in read]
     notes = [*copies, *(note for log, poses in read for note in (*log.notes, *poses.notes))]
-    require_alike(weighings, [log.name for log, _ in read])
-    model = learn_hand(weighings)
+    model = learn_alike(weighings, [log.name for log, _ in read])
     (before, after) = left_over(weighings) if len(read) > 1 else (None, None)
     if not model.weight_n:
         notes.append("no weight was felt to turn with the hand; if its fingertips have one, it was not turned far enough to weigh it")

@@ -19,7 +19,7 @@ from skinfab.fingertip.force.liquid import stirred
 from skinfab.fingertip.force.liquid_simulator import stir
 from skinfab.fingertip.force.poses import poses_of
 from skinfab.fingertip.force.same_hand import require_own_hand
-from skinfab.fingertip.force.weighings import require_alike
+from skinfab.fingertip.force.weighings import learn_alike, require_alike
 from skinfab.rates import wilson
 
 WEIGHT_N, TRUE = 1.67, np.array([5.0, -3.0, 150.0])
@@ -183,3 +183,19 @@ def test_a_weighing_with_something_held_is_named() -> None:
         require_alike([*empty, held], ["a", "b", "c"])
     with pytest.raises(InputError, match=r"^c feels"):
         require_alike([held, empty[0]], ["c", "a"])
+
+
+def test_a_few_narrow_poses_with_something_held_pass_for_an_offset_that_drifted_and_are_named() -> None:
+    empty = [poses_of(hold(seed=2, scene=DRIFTING, weighing=k).log) for k in range(2)]
+    narrow = replace(DRIFTING, poses=3, span_deg=10.0)
+    held, good = (poses_of(hold(seed=2, scene=narrow, weighing=k).log) for k in (None, 5))
+    spoilt = learn_hand([*empty, held])  # its weight is taken for a drift, which nothing can be weighed by
+    assert np.sqrt(spoilt.covariance[0, 0]) > 10 * np.sqrt(learn_hand([*empty, good]).covariance[0, 0])
+    for others in (empty, empty[:1]):
+        with pytest.raises(InputError, match=r"^held\.csv feels 2\.\d+ N less the offsets of the others, in which 0\.\d+ N turn"):
+            require_alike([*others, held], [*"ab"[: len(others)], "held.csv"])
+    require_alike([*empty, good], ["a", "b", "c"])
+    two = poses_of(hold(seed=1, scene=replace(DRIFTING, poses=2, span_deg=20.0), weighing=5).log)
+    other = poses_of(hold(seed=1, scene=DRIFTING, weighing=0).log)
+    with pytest.raises(RefusedError, match=r"^two\.csv \(2 poses\): the empty hand feels a weight"):
+        learn_alike([other, two], ["wide.csv", "two.csv"])
