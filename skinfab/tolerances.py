@@ -258,6 +258,10 @@ PIN_NEIGHBOURS = 6
 #: A spot that this part of the images have is a pin; others are specks and reflections.
 PIN_KEPT = 0.9
 
+#: An image at rest is of the camera that was moved where shift and turn leave so much of a pin's pitch, root mean square: at most 0.075 is
+#: left where the pins' usual places stand for rest, 0.1 to 0.43 once the camera has moved by half a pitch at the rim.
+PIN_SEATED = 0.09
+
 #: Principal components of the pins' places that are kept: with 20 an edge is read a quarter better on real images than with 80, the rest
 #: of which are the pixels' noise, and in half the time.
 PIN_COMPONENTS = 20

@@ -16,6 +16,7 @@ from skinfab.cli.ending import ended_by_signals
 
 if TYPE_CHECKING:
     from skinfab.fingertip.optical.images import ImageSource
+    from skinfab.fingertip.optical.seat import Seat
     from skinfab.fingertip.optical.source import EdgeSource
     from skinfab.readout.frame import Frame
 
@@ -48,7 +49,7 @@ def run(args: argparse.Namespace) -> int:
     from skinfab.errors import InputError
     from skinfab.files import require_apart
     from skinfab.fingertip.optical.model_file import load_edge
-    from skinfab.fingertip.optical.picture import read_picture
+    from skinfab.fingertip.optical.seat import read_rest, seat
     from skinfab.fingertip.optical.source import EdgeSource
 
     if (args.images is None) == (args.camera is None):
@@ -59,8 +60,10 @@ def run(args: argparse.Namespace) -> int:
     if args.images is not None and args.images.is_dir() and args.output.resolve() == args.images.resolve():
         raise InputError(f"{args.output} holds the pictures, and the figure would be taken for one of them; give another folder by -o")
     model, made_from = load_edge(args.model)
+    at = None
     if args.rest is not None:
-        model = replace(model, pins=model.pins.seated(read_picture(args.rest)[0]))
+        at = seat(model.pins, read_rest(args.rest, model.pins.shape))
+        model = replace(model, pins=at.pins)
     source = EdgeSource(_images(args), model)
     # Ctrl-C is the way to end a camera: what came before it is written, also where it is pressed again meanwhile.
     with ended_by_signals() if args.camera is not None else nullcontext(threading.Event()) as stop:
@@ -70,7 +73,8 @@ def run(args: argparse.Namespace) -> int:
         if not felt:
             raise InputError(f"{source.images.name} gave no picture that can be read; {'; '.join(source.images.notes) or 'look at it'}")
         simulated = source.stream.simulated or bool(made_from.get("simulated"))
-        result = _facts(source.images, felt, spent, simulated=simulated)
+        result = _facts(source.images, felt, spent, simulated=simulated) | _rest(at)
+        result["notes"] += [] if at is None or at.fits else [_unseated(args.rest, at)]
         _write(args.output, felt, result)
     if args.json:
         print(json.dumps(result, allow_nan=False))
@@ -81,8 +85,23 @@ def run(args: argparse.Namespace) -> int:
         f"{result['source']}{made}: {result['pictures']} pictures, {result['sure']} of them more than half sure; "
         f"{result['ms']['median']:.2f} ms from picture to edge, worst {result['ms']['worst']:.2f}"
     )
+    if at is not None:
+        print(f"the camera has moved by {at.shift_px:.1f} px and {math.degrees(at.turn_rad):.1f} degrees against the pins (--rest)")
     print(f"{args.output}: {', '.join(FILES)}")
     return 0
+
+
+def _rest(at: Seat | None) -> dict[str, Any]:
+    found = {"shift_px": at.shift_px, "turn_deg": math.degrees(at.turn_rad), "left_px": at.left_px} if at is not None else None
+    return {"rest": found}
+
+
+def _unseated(path: Path, at: Seat) -> str:
+    return (
+        f"--rest {path}: shifted and turned as a whole, the learned pins still lie {at.left_px:.1f} px (root mean square) from where this "
+        f"image shows them, {100 * at.left_px / at.pitch_px:.0f} % of a pin's pitch; it shows a contact or another fingertip, or "
+        "the camera has moved by half a pitch at the rim; what is said of the pictures is not to be trusted: train again"
+    )
 
 
 def _images(args: argparse.Namespace) -> ImageSource:

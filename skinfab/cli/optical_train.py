@@ -44,8 +44,8 @@ def run(args: argparse.Namespace) -> int:
     from skinfab.fingertip.optical.figure import draw_training
     from skinfab.fingertip.optical.judge import SURE, errors, guessed, held_out, off_by, said
     from skinfab.fingertip.optical.model_file import save_edge
-    from skinfab.fingertip.optical.picture import read_picture
     from skinfab.fingertip.optical.regress import Examples, learn
+    from skinfab.fingertip.optical.seat import read_rest
     from skinfab.fingertip.optical.targets import fit_to_learn
     from skinfab.progress import terminal_progress
     from skinfab.staging import staged_folder
@@ -57,7 +57,7 @@ def run(args: argparse.Namespace) -> int:
     with terminal_progress(quiet=args.json) as progress:
         progress(0.0, "reading")
         learned = fit_to_learn(_drawn(_read(args, args.targets, args.images), args.count, args.seed), _columns(args))
-        rest = read_picture(args.rest)[0] if args.rest else None
+        rest = read_rest(args.rest, learned.images[0].shape) if args.rest else None
         examples = Examples.of(learned.images, learned.edges, rest=rest)
         progress(0.3, "learning")
         model = learn(examples, groups=learned.groups)

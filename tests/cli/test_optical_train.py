@@ -185,11 +185,24 @@ def test_rest_is_for_a_camera_that_has_moved(made: Path, tmp_path: Path, capsys:
     sure = []
     for rest in ([], ["--rest", str(tmp_path / "rest.png")]):
         assert main([*words, *rest]) == 0
-        sure.append(json.loads(capsys.readouterr().out)["sure"])
+        said = json.loads(capsys.readouterr().out)
+        sure.append(said["sure"])
     assert sure[0] == 0 and sure[1] >= 5
+    assert said["rest"]["shift_px"] == pytest.approx(3, abs=0.3) and said["rest"]["turn_deg"] == pytest.approx(0, abs=0.2)
+    assert "--rest" not in " ".join(said["notes"])
+    turned = cv2.warpAffine(tip.image(tip.rest), cv2.getRotationMatrix2D((119.5, 119.5), 10.0, 1.0), (240, 240))
+    cv2.imwrite(str(tmp_path / "rest.png"), turned)
+    assert main([*words[:-1], "--rest", str(tmp_path / "rest.png")]) == 0
+    shown = capsys.readouterr()
+    assert "of a pin's pitch" in shown.err and "the camera has moved by " in shown.out
     cv2.imwrite(str(tmp_path / "rest.png"), np.zeros((240, 240), np.uint8))
     assert main([*words, "--rest", str(tmp_path / "rest.png")]) == 1
     assert "127 of 127 pins are not found in the image at rest" in capsys.readouterr().err
+    cv2.imwrite(str(tmp_path / "rest.png"), np.zeros((128, 200), np.uint8))
+    train = ["optical", "train", "--targets", str(made / "sim/targets.csv"), "-o", str(tmp_path / "learned")]
+    for command in (words, train):
+        assert main([*command, "--rest", str(tmp_path / "rest.png")]) == 1
+        assert "(--rest), is of 200 x 128 pixels, and the images that are learned from are of 240 x 240" in capsys.readouterr().err
 
 
 class Camera:

@@ -15,6 +15,7 @@ from skinfab.fingertip.optical.plates import HalfPlane
 from skinfab.fingertip.optical.published import feature
 from skinfab.fingertip.optical.regress import EdgeModel, train
 from skinfab.fingertip.optical.rig import Platform, Rig
+from skinfab.fingertip.optical.seat import seat
 from skinfab.fingertip.optical.shapes import shapes
 from skinfab.fingertip.optical.simulator import Fingertip, Image, paper_fingertip
 
@@ -103,7 +104,7 @@ def test_a_camera_that_has_moved_is_not_believed_and_an_image_at_rest_mends_it(m
         return np.roll(image, (0, 3), axis=(0, 1))  # nothing but dark comes in at the side
 
     rng, rows = np.random.default_rng(0), []
-    anew = replace(model, pins=model.pins.seated(moved(TIP.image(TIP.rest))))
+    anew = replace(model, pins=seat(model.pins, moved(TIP.image(TIP.rest))).pins)
     for _ in range(20):
         angle = rng.uniform(-3, 3)
         image = moved(TIP.frame(HalfPlane(rng.uniform(-4, 4), angle), rng=rng))

@@ -200,6 +200,11 @@ class Pins:
         distance, near = cKDTree(self.rest).query(self.rest, k=1 + PIN_NEIGHBOURS)
         return near[:, 1:], PIN_REACH * distance[:, 1]
 
+    @property
+    def pitch_px(self) -> float:
+        """How far apart neighbours usually lie, px."""
+        return float(np.median(self._near[1])) / PIN_REACH
+
     @cached_property
     def _owner(self) -> NDArray[np.int32]:
         """Of each pixel, the pin that it is nearest to."""
@@ -208,31 +213,6 @@ class Pins:
         row, column = np.indices(self.shape)
         out: NDArray[np.int32] = cKDTree(self.rest).query(np.stack([column, row], axis=-1))[1].astype(np.int32)
         return out
-
-    def seated(self, image: Image) -> Pins:
-        """The same pins where the camera now sees them, shifted and turned as a whole (Kabsch 1976).
-
-        Parameters
-        ----------
-        image : (h, w) uint8
-            Of the untouched fingertip; shifted by less than half the distance between neighbours.
-
-        Raises
-        ------
-        InputError
-            The image has another size, or a tenth of the pins is not found in it.
-        """
-        found = self.track(image)
-        if found.missing.mean() > 1 - PIN_KEPT:
-            raise InputError(
-                f"{int(found.missing.sum())} of {len(self.rest)} pins are not found in the image at rest; give one of the untouched "
-                "fingertip by the camera of the training, or train again where it has moved farther than half a pin's pitch"
-            )
-        before = self.rest[~found.missing]
-        now = before + found.moved[~found.missing]
-        left, _, right = np.linalg.svd((before - before.mean(axis=0)).T @ (now - now.mean(axis=0)))
-        turn = left @ np.diag([1.0, np.sign(np.linalg.det(left @ right))]) @ right
-        return Pins((self.rest - before.mean(axis=0)) @ turn + now.mean(axis=0), self.shape, self.level)
 
     def track(self, image: Image) -> Tracked:
         """Find the pins in an image.

@@ -88,14 +88,6 @@ def test_each_round_finds_pins_beside_those_of_the_last_and_there_are_few_rounds
     np.testing.assert_allclose(found.moved[~found.missing, 1], 2.5 * k[~found.missing])
 
 
-def test_a_camera_that_has_moved_is_told_by_an_image_at_rest(tip: Fingertip, pins: Pins) -> None:
-    way = cv2.getRotationMatrix2D((119.5, 119.5), 2.0, 1.0) + np.array([[0, 0, 3.0], [0, 0, -4.0]])
-    moved = cv2.warpAffine(tip.image(tip.rest), way, (240, 240))
-    np.testing.assert_allclose(pins.seated(moved).rest, pins.rest @ way[:, :2].T + way[:, 2], atol=0.1)
-    with pytest.raises(InputError, match="pins are not found in the image at rest"):
-        pins.seated(cv2.GaussianBlur(moved, (61, 61), 0))
-
-
 def test_usual_places_stand_for_rest() -> None:
     tip, rng = Fingertip(errors=NO_ERRORS), np.random.default_rng(0)
     images = [tip.image(tip.pressed(HalfPlane(float(rng.uniform(-4, 4)), float(rng.uniform(-3, 3))))) for _ in range(60)]
