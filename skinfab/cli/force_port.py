@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 import signal
+import statistics
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -28,6 +30,8 @@ _AGAIN_S = 1.0
 _MS = 1e3
 #: Samples with a force after which units are looked at.
 _LOOKED_AT = 20
+#: Decisions that come so much later than their samples, s, in the median of the last ones, are ever more behind.
+_BEHIND_S, _LAST = 0.5, 20
 
 
 @dataclass(frozen=True, eq=False)
@@ -160,8 +164,27 @@ def watch_port(
         f"{count} samples were {how}" for how, count in (("lost", counts.lost), ("damaged", counts.bad), ("late", counts.late)) if count
     ]
     notes += [f"{missing} samples lacked a component or were saturated, and were passed over"] * bool(missing)
+    notes += fallen_behind(latency)
     log = WrenchLog(stream.name, table[:, 0], table[:, 1:4], table[:, 4:], simulated=stream.simulated)
     return Watched(log, tuple(motions.values()), np.array(latency), stream.simulated, tuple(notes))
+
+
+def fallen_behind(latency_s: Sequence[float]) -> list[str]:
+    """What to say of decisions that came ever later.
+
+    Examples
+    --------
+    >>> fallen_behind([2.0] * 50 + [0.01] * 50), fallen_behind([3.0] * 5)  # a while in between, or next to nothing
+    ([], [])
+    >>> fallen_behind([0.01] * 50 + [3.0] * 50)[0][:42]
+    'at the end decisions were 3.0 s behind the'
+    """
+    if len(latency_s) < _LAST or (behind := statistics.median(latency_s[-_LAST:])) < _BEHIND_S:
+        return []
+    return [
+        f"at the end decisions were {behind:.1f} s behind their samples, and what came in that time was not read: this computer is too "
+        "busy; end other work on it"
+    ]
 
 
 class _Rest:

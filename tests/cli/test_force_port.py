@@ -8,7 +8,7 @@ import pytest
 
 from skinfab.cli.force_port import watch_port
 from skinfab.errors import InputError
-from skinfab.fingertip.force.motion import Limits, MotionWatch, find_motions
+from skinfab.fingertip.force.motion import Limits, Motion, MotionWatch, find_motions
 from skinfab.fingertip.force.motion_simulator import grasp_log
 from skinfab.fingertip.force.touch_model import TouchModel
 from skinfab.fingertip.force.wrench import SensorNoise, force_stream
@@ -59,6 +59,21 @@ def test_what_gathered_before_it_was_read_is_no_latency(monkeypatch: pytest.Monk
         watched = watch_port(str(device.path), limits=LIMITS, seconds=2, quiet=True)
     assert len(watched.log) == 400 and 0 < len(watched.latency_s) < 300
     assert watched.latency["median_ms"] < 300  # those that waited did so for up to 700 ms
+
+
+def test_decisions_that_fall_behind_are_told_at_the_end(monkeypatch: pytest.MonkeyPatch) -> None:
+    made = recording(3.0)
+    step = MotionWatch.step
+
+    def slow(*args: object) -> list[Motion]:
+        time.sleep(0.02)  # four samples' time
+        return step(*args)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(MotionWatch, "step", slow)
+    with PtyServer(made.stream, made) as device:
+        watched = watch_port(str(device.path), limits=LIMITS, seconds=1.5, quiet=True)
+    (said,) = watched.notes
+    assert said.startswith("at the end decisions were ") and "was not read: this computer is too busy" in said
 
 
 def test_units_of_the_stream_are_converted() -> None:
