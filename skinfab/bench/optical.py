@@ -79,11 +79,17 @@ def sentence(made: Sequence[Mapping[str, Any]], rates: Sequence[Mapping[str, Any
         words.append(f"{name} close {right} of {runs} contours{worst}")
     first = rates[0]
     usual = {row["method"]: row for row in rates if (row["step_mm"], row["noise_mm"]) == (first["step_mm"], first["noise_mm"])}
-    far = [row for row in rates if row["method"] == IMPROVED]
-    worst_row = min(far, key=lambda row: row["rate"])
     return (
         f"On a simulated fingertip, {'; '.join(words)}; of {first['seeds']} circles in steps of {first['step_mm']:g} mm "
         + ", ".join(f"{usual[name]['right']} close by {name}" for name in (PUBLISHED, FRAMES, IMPROVED))
-        + f"; the last is worst at steps of {worst_row['step_mm']:g} mm and noise of {worst_row['noise_mm']:g} mm: {worst_row['right']}. "
-        "The default is the last, in steps of 1 mm."
+        + f"; the last {_worst([row for row in rates if row['method'] == IMPROVED])}. The default is the last, in steps of 1 mm."
     )
+
+
+def _worst(rows: Sequence[Mapping[str, Any]]) -> str:
+    """Where one way closes fewest, or that it closes all of them everywhere."""
+    if all(row["right"] == row["seeds"] for row in rows):
+        steps, noises = ([row[key] for row in rows] for key in ("step_mm", "noise_mm"))
+        return f"closes all at every step (up to {max(steps):g} mm) and every noise of the tips (up to {max(noises):g} mm)"
+    worst = min(rows, key=lambda row: row["rate"])
+    return f"is worst at steps of {worst['step_mm']:g} mm and noise of {worst['noise_mm']:g} mm: {worst['right']}"

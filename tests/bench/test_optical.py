@@ -66,7 +66,9 @@ def test_the_sentence_and_the_chart_are_of_the_tables(tmp_path: Path) -> None:
     table = [asdict(row) for row in RATES]
     said = sentence([asdict(bad), asdict(good)], table)
     assert "merged pins close 0 of 1" in said and "close 1 of 1" in said
-    assert "7 close by merged pins, 19 close by" in said and "noise of 0.3 mm: 11" in said
+    assert "7 close by merged pins, 19 close by" in said and "the last is worst at steps of 1 mm and noise of 0.3 mm: 11." in said
+    whole = sentence([asdict(bad), asdict(good)], [row | {"right": 20, "rate": 1.0} for row in table])
+    assert "; the last closes all at every step (up to 8 mm) and every noise of the tips (up to 0.3 mm)." in whole
     draw_rates(table, tmp_path / "a.png")
     first = (tmp_path / "a.png").read_bytes()
     table[0]["rate"] = 0.9
