@@ -2,6 +2,7 @@
 .PHONY: demo test collected setup lint peers lock pictures
 
 PYTHON = .venv/bin/python
+COMPILING = tests/test_docs.py tests/fingertip/array/test_contours.py tests/fingertip/array/test_layer.py
 
 demo: setup
 	.venv/bin/skinfab make meshes/robot_finger.obj -o demo_out
@@ -17,8 +18,10 @@ test: lint peers collected
 	$(PYTHON) -m pytest -q -W error -n 2 --dist worksteal --doctest-modules skinfab gcode calibration tests
 
 # The tests' files are compiled here, while the linters and the peers leave a core free: both workers at once would do it twice.
+# So are the loops that numba compiles, by the tests that need most of them.
 collected: setup
 	@$(PYTHON) -m pytest -q -W error --collect-only --doctest-modules skinfab gcode calibration tests >.venv/collected || { cat .venv/collected; exit 1; }
+	@$(PYTHON) -m pytest -q -W error $(COMPILING) >.venv/collected || { cat .venv/collected; exit 1; }
 
 # Programs of others that tests compare with.
 peers: setup
