@@ -100,7 +100,8 @@ def _unseated(path: Path, at: Seat) -> str:
     return (
         f"--rest {path}: shifted and turned as a whole, the learned pins still lie {at.left_px:.1f} px (root mean square) from where this "
         f"image shows them, {100 * at.left_px / at.pitch_px:.0f} % of a pin's pitch; it shows a contact or another fingertip, or "
-        "the camera has moved by half a pitch at the rim; what is said of the pictures is not to be trusted: train again"
+        "the camera has moved by half a pitch at the rim; give another, or train "
+        "again where few pictures are surely read"
     )
 
 
