@@ -69,7 +69,7 @@ def _fresh(path: Path, log: Log, content: Any, pace: Pace) -> tuple[list[Label],
     own = [to_the_end(each, time, pace.rate_hz) for each in own]
     rows, notes = without_doubles(own, [each.log for each in own], path)
     own = [own[k] for k in rows]
-    at = [rows_of(each, time, pace.rate_hz) for each in own]
+    at = [rows_of(each, time, pace) for each in own]
     if beyond := sum(each is None for each in at):
         notes.append(
             f"{beyond} of the {len(own)} rows of {path.name} end after the log does, at {time[-1]:.3f} s, and count nowhere; is it whole?"

@@ -114,12 +114,12 @@ def run(args: argparse.Namespace) -> int:
 
 def _from_log(args: argparse.Namespace, content: Any) -> tuple[list[Told], dict[str, Any]]:
     from skinfab.fingertip.nail.live import decide_log
-    from skinfab.fingertip.nail.pace import pace_of
+    from skinfab.fingertip.nail.pace import pace_of_log
     from skinfab.fingertip.nail.units import absent, units_note
     from skinfab.readout.logs.log import read_log
 
     log = read_log(args.log)
-    pace = pace_of(log.recording, rate_hz=args.rate)
+    pace = pace_of_log(log, rate_hz=args.rate)
     told, lost = decide_log(content.model, log.recording, samples=args.window, every=args.every, regression=content.regression, pace=pace)
     samples = getattr(content.model, "samples", args.window)
     facts: dict[str, Any] = {

@@ -22,7 +22,8 @@ from numpy.typing import NDArray
 from skinfab.errors import InputError
 from skinfab.files import atomic_write
 from skinfab.fingertip.nail.doubles import without_copies, without_doubles
-from skinfab.fingertip.nail.pace import Pace, pace_of, places_of, times_of
+from skinfab.fingertip.nail.pace import Pace, pace_of_log
+from skinfab.fingertip.nail.places import places_of, times_of
 from skinfab.fingertip.nail.units import channel_columns, units_said
 from skinfab.readout.frame import Recording
 from skinfab.readout.logs.log import read_log
@@ -197,24 +198,24 @@ def read_trials(path: str | Path, *, rate_hz: float | None = None) -> tuple[list
     Raises
     ------
     InputError
-        As `read_labels`, `pace_of`, `without_doubles` and `without_copies`; a log cannot be read, has none of the channels, ends before a
-        trial does, or lacks most of one.
+        As `read_labels`, `pace_of_log`, `without_doubles` and `without_copies`; a log cannot be read, has none of the channels, ends before
+        a trial does, or lacks most of one.
     """
     path = Path(path)
     labels, simulated = read_labels(path)
-    logs: dict[str, tuple[FloatArray, FloatArray, NDArray[np.bool_], float, str, bool]] = {}
+    logs: dict[str, tuple[FloatArray, FloatArray, NDArray[np.bool_], Pace, str, bool]] = {}
     trials, notes = [], []
     for each in labels:
         if each.log not in logs:
             log = read_log(path.parent / each.log)
             notes += [f"{log.file}: {note}" if log.file not in note else note for note in log.notes]
             simulated |= log.recording.stream.simulated
-            pace = pace_of(log.recording, rate_hz=rate_hz)
-            logs[each.log] = (*evenly(log.recording, pace), pace.rate_hz, log.sha256, units_said(log.recording.stream))
+            pace = pace_of_log(log, rate_hz=rate_hz)
+            logs[each.log] = (*evenly(log.recording, pace), pace, log.sha256, units_said(log.recording.stream))
             notes += [f"{log.file}: {wrong}" for wrong in pace.notes]
-        time, values, bad, rate, sha256, said = logs[each.log]
-        whole = to_the_end(each, time, rate)
-        rows = rows_of(whole, time, rate)
+        time, values, bad, pace, sha256, said = logs[each.log]
+        whole = to_the_end(each, time, pace.rate_hz)
+        rows = rows_of(whole, time, pace)
         if rows is None:
             raise InputError(
                 f"{path}: {each.log} ends at {time[-1]:.3f} s and a trial of it lasts from {whole.start_s:g} to {whole.end_s:g} s; "
@@ -226,7 +227,7 @@ def read_trials(path: str | Path, *, rate_hz: float | None = None) -> tuple[list
                 f"{path}: {each.log} has {there.sum()} of the {len(there)} readings of its trial from {whole.start_s:g} to "
                 f"{whole.end_s:g} s; leave that row out, or record the trial again"
             )
-        trials.append(Trial(whole, values[rows], bad[rows], rate, sha256, said))
+        trials.append(Trial(whole, values[rows], bad[rows], pace.rate_hz, sha256, said))
     kept, doubled = without_doubles([each.label for each in trials], [each.sha256 for each in trials], path)
     trials = [trials[k] for k in kept]
     kept, copied = without_copies([each.label for each in trials], [each.values for each in trials], path)
@@ -238,10 +239,11 @@ def to_the_end(label: Label, time: FloatArray, rate_hz: float) -> Label:
     return label if math.isfinite(label.end_s) else replace(label, end_s=float(time[-1]) + 1 / rate_hz)
 
 
-def rows_of(label: Label, time: FloatArray, rate_hz: float) -> slice | None:
-    """Which of the readings at these times are the trial's; None where it begins or ends after the log's end."""
-    first, last = np.searchsorted(time, [label.start_s - 0.5 / rate_hz, label.end_s - 0.5 / rate_hz])
-    return None if last - first < 2 or time[-1] < label.end_s - 1.5 / rate_hz else slice(int(first), int(last))
+def rows_of(label: Label, time: FloatArray, pace: Pace) -> slice | None:
+    """Which of the readings at these times are the trial's; None where it begins or ends after the log's end, as far as its times tell."""
+    first, last = np.searchsorted(time, [label.start_s - 0.5 / pace.rate_hz, label.end_s - 0.5 / pace.rate_hz])
+    ends = label.end_s - 1.5 / pace.rate_hz - pace.loose_s
+    return None if last - first < 2 or time[-1] < ends else slice(int(first), int(last))
 
 
 def six_channels(recording: Recording) -> tuple[FloatArray, NDArray[np.bool_]]:

@@ -18,8 +18,9 @@ from skinfab.fingertip.nail.classify import NailModel
 from skinfab.fingertip.nail.frozen import without_frozen
 from skinfab.fingertip.nail.histogram_model import HistogramModel
 from skinfab.fingertip.nail.labels import six_channels
-from skinfab.fingertip.nail.pace import Pace, pace_of, places_of, times_of
+from skinfab.fingertip.nail.pace import Pace, pace_of
 from skinfab.fingertip.nail.phasors import FIND_SHORTEST, SHORTEST, find_drive, turns
+from skinfab.fingertip.nail.places import places_of, times_of
 from skinfab.fingertip.nail.reader import Decision, Reader
 from skinfab.fingertip.nail.regress import Continuous, Regression
 from skinfab.fingertip.nail.units import CHANNELS, channel_columns

@@ -48,6 +48,8 @@ class Log:
     recording : Recording
     notes : tuple of str
         What was cut off, passed over or taken for granted, a sentence each.
+    rate_of_times : bool, optional
+        Nobody declared the stream's rate: it is made of a table's times, and says nothing that these do not.
     """
 
     file: str
@@ -55,6 +57,7 @@ class Log:
     sha256: str
     recording: Recording
     notes: tuple[str, ...]
+    rate_of_times: bool = False
 
 
 def read_log(path: str | Path) -> Log:
@@ -83,7 +86,7 @@ def read_log(path: str | Path) -> Log:
     try:
         kind, read = _kind(path)
         recording, notes = read(path)
-        return Log(path.name, kind, _sha256(path), recording, tuple(notes))
+        return Log(path.name, kind, _sha256(path), recording, tuple(notes), read is _foreign_csv)
     except OSError as fault:
         raise InputError(f"{path}: {fault.strerror or fault}; give a log") from fault
     except InputError as fault:
