@@ -209,6 +209,9 @@ SEVERAL_OTHER = 0.05
 #: of 5 mm or a square of 12 mm has the force of a fifth at most and lies 1.1 to 1.7 tactels from them.
 SEVERAL_LIGHT, SEVERAL_TACTELS = 1 / 3, 1.8
 
+#: Points that explain a frame may be a line's where two lie nearer, tactels: those of a rod 12 mm long are up to 1.9 off.
+SEVERAL_NEAR = 2.2
+
 #: A fit of forces to a tactel array stops at steps below this: a tenth of what noise of one percent moves them; what is left is its square.
 MATCH_MM = 5e-3
 

@@ -18,9 +18,10 @@ from skinfab.cli import steps
 from skinfab.cli.record import baud
 
 if TYPE_CHECKING:
+    from skinfab.fingertip.array.analyser import Reading
     from skinfab.fingertip.array.matched import ArrayModel
     from skinfab.fingertip.array.tracking import Event
-    from skinfab.fingertip.array.watch import ArrayWatch, Reading
+    from skinfab.fingertip.array.watch import ArrayWatch
 
 FILES = ("array.png", "events.csv", "frames.csv", "result.json")
 #: How long to wait for a frame before looking whether time is up, s.
@@ -223,7 +224,7 @@ def _row(reading: Reading, simulated: bool) -> list[str]:
     place, peak = reading.place, reading.peak
     direction = ["", "", ""]
     if line is not None:
-        sure = str(int(reading.state == "line" and line.orientation.sure))
+        sure = str(int(line.orientation.sure))
         direction = [number(math.degrees(line.line_rad)), number(math.degrees(line.line_sd_rad)), sure]
     turned = ["", "", ""]
     if (spot := reading.spot) is not None:

@@ -7,6 +7,7 @@ import pytest
 from scipy.ndimage import map_coordinates
 
 from skinfab.errors import InputError, RefusedError
+from skinfab.fingertip.array.analyser import Analyser
 from skinfab.fingertip.array.contours import contour
 from skinfab.fingertip.array.force import point_force
 from skinfab.fingertip.array.geometry import Geometry, wrapped
@@ -20,7 +21,6 @@ from skinfab.fingertip.array.peak import PeakFinder
 from skinfab.fingertip.array.protocols import presses
 from skinfab.fingertip.array.simulator import Device, Rubber, Skin
 from skinfab.fingertip.array.tracking import Place, Tracker
-from skinfab.fingertip.array.watch import Analyser
 from skinfab.readout.frame import Recording
 
 SEED = Geometry()

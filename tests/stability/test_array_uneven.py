@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from skinfab.fingertip.array import matched
+from skinfab.fingertip.array.analyser import Analyser, Reading
 from skinfab.fingertip.array.geometry import Geometry
 from skinfab.fingertip.array.matched import ArrayModel
 from skinfab.fingertip.array.simulator import Skin
 from skinfab.fingertip.array.tracking import Event
-from skinfab.fingertip.array.watch import Analyser, Reading
-from skinfab.tolerances import PEAK_OTHER
+from skinfab.tolerances import MATCH_UNEXPLAINED, PEAK_OTHER
 
 SEED = Geometry()
 SKIN, MODEL = Skin(SEED), ArrayModel.nominal(SEED)
@@ -65,3 +65,27 @@ def test_a_wide_contact_is_no_few_points(monkeypatch: pytest.MonkeyPatch) -> Non
     assert read([disc])[0][0].state == "wide"
     monkeypatch.setattr(matched, "SEVERAL_TACTELS", 0.0)
     assert read([disc])[0][0].state == "several"
+
+
+def test_a_rod_beside_a_finger_is_no_three_points() -> None:
+    """Points explain the frame too, and none of those that stand for the rod is a contact; three that do touch stay three."""
+    rod = SKIN.lined(2.0, axial_mm=8.0, angle_rad=-1.0, line_rad=-0.6)
+    Z = rod + SKIN.pressed(1.0, axial_mm=19.0, angle_rad=1.5)
+    match = matched.Matcher(MODEL, noise=2e-4)
+    points = match.several(Z)
+    assert len(points) == 3 and float(((Z - match.predicted(points)) ** 2).sum()) < MATCH_UNEXPLAINED * float((Z**2).sum())
+    (reading,), _ = read([Z])
+    assert reading.state == "several" and [each.force_n for each in reading.contacts] == pytest.approx([2.0, 1.0], rel=0.06)
+    assert [each.axial_mm for each in reading.contacts] == pytest.approx([8.0, 19.0], abs=0.5)
+    assert reading.line is not None and reading.line.line_rad == pytest.approx(-0.6, abs=math.radians(5))
+    three = SKIN.points([(1.5, 0, 0), (1.0, 0, 0), (0.7, 0, 0)], [(8.0, -1.0), (15.4, -1.0), (19.0, 1.5)])
+    (reading,), _ = read([three])
+    assert reading.line is None and len(reading.contacts) == 3
+
+
+def test_a_finger_that_slips_beside_a_rod_is_told() -> None:
+    rod = SKIN.lined(2.0, axial_mm=8.0, angle_rad=-1.0, line_rad=0.9)
+    before, after = (SKIN.pressed(1.0, axial_mm=axial, angle_rad=1.5) for axial in (13.0, 19.0))
+    _, events = read([rod] * 6 + [rod + before] * 8 + [rod + after] * 8 + [rod] * 6 + [0 * rod] * 3)
+    assert [(event.kind, event.number) for event in events] == [("touch", 1), ("touch", 2), ("slip", 2), ("lift", 2), ("lift", 1)]
+    assert math.hypot(events[2].along_mm - 6.0, events[2].around_mm) < 0.5

@@ -7,11 +7,12 @@ import numpy as np
 import pytest
 
 from skinfab.errors import InputError
+from skinfab.fingertip.array.analyser import Reading
 from skinfab.fingertip.array.geometry import Geometry
 from skinfab.fingertip.array.layer import LayerDevice
 from skinfab.fingertip.array.matched import ArrayModel
 from skinfab.fingertip.array.simulator import Skin
-from skinfab.fingertip.array.watch import ArrayWatch, Reading, read_all
+from skinfab.fingertip.array.watch import ArrayWatch, read_all
 from skinfab.readout.frame import Recording
 
 SEED = Geometry()

@@ -13,10 +13,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from skinfab.fingertip.array.analyser import Analyser
 from skinfab.fingertip.array.geometry import Geometry
 from skinfab.fingertip.array.matched import ArrayModel
 from skinfab.fingertip.array.simulator import Device
-from skinfab.fingertip.array.watch import Analyser
 
 FloatArray = NDArray[np.float64]
 

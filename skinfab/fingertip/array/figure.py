@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from skinfab.files import atomic_path
+from skinfab.fingertip.array.analyser import Reading
 from skinfab.fingertip.array.judge import QUANTITIES, WAYS, Error
 from skinfab.fingertip.array.matched import ArrayModel
 from skinfab.fingertip.array.peak import PeakFinder
-from skinfab.fingertip.array.watch import Reading
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -95,11 +95,11 @@ def _draw_skin(axes: Axes, touched: Sequence[Reading], model: ArrayModel) -> Non
         if of:
             axes.plot([math.degrees(one.angle_rad) for one in each], [one.axial_mm for one in each], ".", ms=5, color=colour, label=state)
         for reading in of:
-            if state == "line" and reading.line is not None and reading.line.orientation.sure:
-                half, a = reading.line.length_mm / 2, reading.line.line_rad
+            if (line := reading.line) is not None and line.orientation.sure:
+                half, a = line.length_mm / 2, line.line_rad
                 dx, dy = math.degrees(half * math.cos(a) / g.finger_radius), half * math.sin(a)
-                centre = math.degrees(reading.place.angle_rad)
-                axes.plot([centre - dx, centre + dx], [reading.place.axial_mm - dy, reading.place.axial_mm + dy], "-", lw=0.3, color=colour)
+                centre = math.degrees(line.angle_rad)
+                axes.plot([centre - dx, centre + dx], [line.axial_mm - dy, line.axial_mm + dy], "-", lw=0.3, color=colour)
     axes.set(xlabel="angle around the finger, degrees", ylabel="place along it, mm from ring 0", xlim=(-180, 180))
     axes.legend(fontsize=7)
 

@@ -271,6 +271,10 @@ class Matcher:
         at, unexplained, steps, used = self._fit(Z, np.array([[x * px, y * ps, height / self._per_force]]))
         return at[0, 0], at[0, 1], at[0, 2] * self.model.rubber.young, unexplained, steps, used
 
+    def point(self, Z: FloatArray) -> Contact:
+        """The one force that explains most; the readings must hold a finite one."""
+        return self._contact(*self.one(Z)[:3])
+
     def _fit(self, Z: FloatArray, start: FloatArray) -> tuple[FloatArray, float, int, int]:
         out: tuple[FloatArray, float, int, int] = fit_forces(Z, self.model.gains, start, self._skin, MATCH_MM)
         return out
@@ -321,11 +325,11 @@ class Matcher:
             rest = Z - self.predicted(found)
             if not highest(rest) > floor or float(np.nansum(rest**2)) <= enough:
                 break
-            found.append(self._contact(*self.one(rest)[:3]))
+            found.append(self.point(rest))
             for _ in range(_ROUNDS):
                 for k in range(len(found)):
                     rest = Z - self.predicted(found[:k] + found[k + 1 :])
-                    found[k] = self._contact(*self.one(rest)[:3])
+                    found[k] = self.point(rest)
         light = SEVERAL_LIGHT * max((each.force_n for each in found), default=0.0)
         apart = [
             one

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from skinfab.errors import InputError, RefusedError
+from skinfab.fingertip.array.analyser import Analyser
 from skinfab.fingertip.array.geometry import Geometry
 from skinfab.fingertip.array.judge import held_out
 from skinfab.fingertip.array.learn import learn, load_array, save_array
@@ -15,7 +16,7 @@ from skinfab.fingertip.array.logs import ArrayLog, of_recording, read_array_log
 from skinfab.fingertip.array.matched import ArrayModel
 from skinfab.fingertip.array.protocols import presses, rods, twirl
 from skinfab.fingertip.array.simulator import Device, Rubber, Skin, contact_line, deflection
-from skinfab.fingertip.array.watch import Analyser, ArrayWatch, read_all
+from skinfab.fingertip.array.watch import ArrayWatch, read_all
 from skinfab.readout.frame import Recording
 from skinfab.readout.logs.log import write_log
 

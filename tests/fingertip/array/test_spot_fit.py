@@ -5,11 +5,11 @@ import math
 import numpy as np
 import pytest
 
+from skinfab.fingertip.array.analyser import Analyser, Reading
 from skinfab.fingertip.array.geometry import Geometry, wrapped
 from skinfab.fingertip.array.matched import ArrayModel
 from skinfab.fingertip.array.simulator import Device, Rubber, Skin
 from skinfab.fingertip.array.spot_fit import SpotFinder, disc_nodes
-from skinfab.fingertip.array.watch import Analyser, Reading
 
 SEED = Geometry()
 NOISE = 2e-4
