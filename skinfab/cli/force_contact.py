@@ -3,28 +3,27 @@
 from __future__ import annotations
 
 import argparse
-import csv
-import io
 import json
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import asdict, replace
+from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from skinfab.cli import steps
 from skinfab.cli.bench import repeats
+from skinfab.cli.force_contact_result import facts_of, lines_of, write
+from skinfab.cli.force_result import told_as_json
 from skinfab.cli.record import baud
 
 if TYPE_CHECKING:
-    from skinfab.fingertip.force.contact import Contacts, Hemisphere
+    from skinfab.fingertip.force.contact import Hemisphere
     from skinfab.fingertip.force.contact_mesh import TipMesh
     from skinfab.fingertip.force.logs import WrenchLog
     from skinfab.fingertip.force.motion import Motion
     from skinfab.fingertip.force.touch_model import TouchModel
 
 _FILES = ("contacts.csv", "events.csv", "contact.png", "result.json")
-_HEAD = ("log", "time_s", "x_mm", "y_mm", "z_mm", "nx", "ny", "nz", "force_n", "inclination_deg", "torsion_nmm", "miss_mm", "sd_mm")
 _TRUTH = "truth.csv"
 #: Of samples of a straight sensor fewer than this part read a twist, of one that is off by 1 mm and 2 degrees a half at 3 N.
 _TWISTED = 0.05
@@ -158,7 +157,7 @@ def run(args: argparse.Namespace) -> int:
         found.append((contacts, each))
     if args.truth and (missing := next((log.name for log in logs if log.name not in truth), None)):
         raise InputError(f"{args.truth} has no event of {missing}; name the logs there as their files")
-    result = _facts(args, logs, found, truth) | ({"latency": latency} if latency else {}) | {"learned": model is not None}
+    result = facts_of(args, logs, found, truth) | ({"latency": latency} if latency else {}) | {"learned": model is not None}
     for name, log_facts in result["logs"].items():
         if model is None and (twisted := log_facts["flags"][FLAGS[TORSION]]) > _TWISTED * log_facts["touching"]:
             result["notes"].append(
@@ -168,12 +167,10 @@ def run(args: argparse.Namespace) -> int:
     if simulated_model and not result["simulated"]:
         result["simulated"] = True
         result["notes"].append("the model was learned from simulated touches; what it makes of a real sensor is not to be relied on")
-    _write(args, logs, found, truth, result)
-    if args.json:
-        print(json.dumps(result, allow_nan=False))
+    write(args, logs, found, truth, result)
+    if told_as_json(args, result):
         return 0
-    steps.say(result["notes"])
-    for line in _lines(result):
+    for line in lines_of(result):
         print(line)
     print(f"{args.output}: {', '.join(_FILES)}")
     return 0
@@ -264,123 +261,3 @@ def _watched(
         except InputError as fault:  # what came is written all the same: nobody can record it again
             notes = (*notes, str(fault))
     return [replace(live.log, notes=notes)], [list(live.motions)], live.latency
-
-
-def _facts(
-    args: argparse.Namespace,
-    logs: Sequence[WrenchLog],
-    found: Sequence[tuple[Contacts, list[Motion]]],
-    truth: Mapping[str, Sequence[Motion]],
-) -> dict[str, Any]:
-    from skinfab.fingertip.force.contact import FLAGS
-
-    out: dict[str, Any] = {
-        "friction_deg": args.friction,
-        "simulated": any(log.simulated for log in logs),
-        "logs": {},
-        "notes": [note for log in logs for note in log.notes],
-    }
-    for log, (contacts, events) in zip(logs, found, strict=True):
-        touching, trusted = contacts.touching, contacts.trusted
-        if (missed := int(((contacts.missed | contacts.mounted) & touching).sum())) * 2 > int(touching.sum()):
-            out["notes"].append(
-                f"{log.name}: at {missed} of {int(touching.sum())} samples with a force its line comes from where nothing touches "
-                "the fingertip; is the force's sign that of the force on the fingertip, and are its frame and size right?"
-            )
-        out["logs"][log.name] = {
-            "sha256": log.sha256,
-            "simulated": log.simulated,
-            "samples": len(log),
-            "touching": int(touching.sum()),
-            "flags": {words: int(((contacts.flags & bit) != 0).sum()) for bit, words in FLAGS.items()},
-            "trusted": int(trusted.sum()),
-            "median_sd_mm": float(f"{_median(contacts.sd_mm[trusted]):.4g}") if trusted.any() else None,
-            "events": [{"kind": e.kind, "start_s": e.start, "end_s": None if e.lasting else e.end, "told_s": e.told} for e in events],
-        }
-    if truth:
-        from skinfab.fingertip.force.motion_score import figures, score
-
-        judged = [score(events, truth[log.name], end=float(log.time[-1])) for log, (_, events) in zip(logs, found, strict=True)]
-        out["evaluation"] = {
-            kind: {key: asdict(value) if key in ("precision", "recall") else value for key, value in of.items()}
-            for kind, of in figures(judged).items()
-        }
-    finite: dict[str, Any] = _finite(out)
-    return finite
-
-
-def _median(values: Any) -> float:
-    import numpy as np
-
-    return float(np.median(values))
-
-
-def _finite(value: Any) -> Any:
-    """JSON has no NaN: what is not known is null."""
-    if isinstance(value, dict):
-        return {key: _finite(each) for key, each in value.items()}
-    if isinstance(value, list):
-        return [_finite(each) for each in value]
-    return None if isinstance(value, float) and not math.isfinite(value) else value
-
-
-def _write(
-    args: argparse.Namespace,
-    logs: Sequence[WrenchLog],
-    found: Sequence[tuple[Contacts, list[Motion]]],
-    truth: Mapping[str, Sequence[Motion]],
-    result: dict[str, Any],
-) -> None:
-    from skinfab.fingertip.force.motion_figure import draw_motions
-    from skinfab.fingertip.force.motion_file import events_csv
-    from skinfab.staging import staged_folder
-
-    events = {log.name: each for log, (_, each) in zip(logs, found, strict=True)}
-    with staged_folder(args.output) as folder:
-        (folder / "contacts.csv").write_text(_contacts_csv(logs, [contacts for contacts, _ in found]))
-        (folder / "events.csv").write_text(events_csv(events, simulated={log.name: log.simulated for log in logs}))
-        draw_motions(logs[0], *found[0], truth.get(logs[0].name, ()), args.friction, folder / "contact.png", logs=len(logs))
-        (folder / "result.json").write_text(json.dumps(result, indent=1, allow_nan=False) + "\n")
-
-
-def _contacts_csv(logs: Sequence[WrenchLog], found: Sequence[Contacts]) -> str:
-    import numpy as np
-
-    text = io.StringIO()
-    rows = csv.writer(text, lineterminator="\n")
-    rows.writerow([*_HEAD, "flags", "simulated"])
-    for log, c in zip(logs, found, strict=True):
-        numbers = np.column_stack(
-            [log.time, c.point, c.normal, c.force_n, np.degrees(c.inclination_rad), c.torsion_nmm, c.miss_mm, c.sd_mm]
-        )
-        for row, flags in zip(numbers.tolist(), c.flags.tolist(), strict=True):
-            rows.writerow([log.name, *(f"{value:.6g}" for value in row), flags, int(log.simulated)])
-    return text.getvalue()
-
-
-def _lasted(ms: float) -> str:
-    return f"{ms:.2g} ms" if ms < 99.5 else f"{ms:.0f} ms" if ms < 999.5 else f"{ms / 1000:.2g} s"
-
-
-def _lines(result: dict[str, Any]) -> list[str]:
-    lines = []
-    by = "" if result["learned"] else " by noise alone"
-    for name, log in result["logs"].items():
-        kinds = [event["kind"] for event in log["events"]]
-        told = ", ".join(f"{kinds.count(kind)} x {kind}" for kind in dict.fromkeys(kinds)) or "nothing moved"
-        made = " (simulated)" if log["simulated"] else ""
-        known = "" if log["median_sd_mm"] is None else f", point known to {log['median_sd_mm']:.2g} mm{by}"
-        wrong = [f"{count} where {words}" for words, count in list(log["flags"].items())[2:] if count]
-        doubt = f"; flagged: {', '.join(wrong)}" if wrong else ""
-        lines.append(f"{name}{made}: touched in {log['touching']} of {log['samples']} samples{known}{doubt}; {told}")
-    if "latency" in result:
-        of = result["latency"]
-        median, most, worst = (_lasted(of[name]) for name in ("median_ms", "p99_ms", "worst_ms"))
-        lines.append(f"decided after {median} (99 %: {most}, worst {worst})")
-    for kind, of in result.get("evaluation", {}).items():
-        rates = [
-            f"{of[key]['value']:.3f} [{of[key]['low']:.3f}, {of[key]['high']:.3f}]" if of[key]["value"] is not None else "-"
-            for key in ("precision", "recall")
-        ]
-        lines.append(f"{kind:11s}precision {rates[0]}  recall {rates[1]}  of {of['true']}")
-    return lines

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from skinfab.cli import steps
 from skinfab.cli.bench import repeats
+from skinfab.cli.force_result import result_folder, told_as_json
 
 if TYPE_CHECKING:
     from skinfab.fingertip.force.gravity import Centre
@@ -132,7 +133,6 @@ def train(args: argparse.Namespace) -> int:
     from skinfab.fingertip.force.gravity_model import left_over, save_hand
     from skinfab.fingertip.force.logs import once
     from skinfab.fingertip.force.weighings import learn_alike
-    from skinfab.staging import staged_folder
 
     require_apart(args.output, _TRAINED, args.logs)
     read = [_poses(path) for path in args.logs]
@@ -159,13 +159,10 @@ def train(args: argparse.Namespace) -> int:
         "made_from": made_from,
         "notes": notes,
     }
-    with staged_folder(args.output) as folder:
+    with result_folder(args, result) as folder:
         save_hand(model, folder / "model.npz", facts={"simulated": simulated, "held_out": result["held_out"], "made_from": made_from})
-        (folder / "result.json").write_text(json.dumps(result, indent=1, allow_nan=False) + "\n")
-    if args.json:
-        print(json.dumps(result, allow_nan=False))
+    if told_as_json(args, result):
         return 0
-    steps.say(notes)
     made = " (simulated)" if simulated else ""
     weight = f"a weight of {model.weight_n:.3f} N turns with the hand" if model.weight_n else "no weight turns with the hand"
     print(f"{len(read)} weighing{'s' * (len(read) > 1)} of the empty hand{made}: offsets, and {weight}")
@@ -187,7 +184,6 @@ def run(args: argparse.Namespace) -> int:
     from skinfab.files import require_apart
     from skinfab.fingertip.force.gravity_figure import draw_centres
     from skinfab.fingertip.force.gravity_model import load_hand
-    from skinfab.staging import staged_folder
 
     require_apart(args.output, _RUN, [*args.logs, *([args.model] if args.model else [])])
     model, simulated_model = load_hand(args.model) if args.model else (None, False)
@@ -208,15 +204,12 @@ def run(args: argparse.Namespace) -> int:
     if simulated_model and not all(each.log.simulated for each in found):
         notes.append("the empty hand was a simulated one; what is left of a real one is not to be relied on")
     result = {"simulated": simulated, "weighed": model is not None, "objects": [_facts(each) for each in found], "notes": notes}
-    with staged_folder(args.output) as folder:
+    with result_folder(args, result) as folder:
         (folder / "gravity.csv").write_text(_csv(_rows(found)))
-        (folder / "result.json").write_text(json.dumps(result, indent=1, allow_nan=False) + "\n")
         drawn = [(e.log.name, e.drawn, e.centre, e.published) for e in found]
         draw_centres(drawn, folder / "gravity.png", simulated=simulated, weighed=model is not None)
-    if args.json:
-        print(json.dumps(result, allow_nan=False))
+    if told_as_json(args, result):
         return 0
-    steps.say(notes)
     with_tips = "" if model else " with the fingertips"
     for each in found:
         x, y, z = each.centre.point

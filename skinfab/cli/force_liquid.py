@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from skinfab.cli import steps
 from skinfab.cli.bench import repeats
+from skinfab.cli.force_result import result_folder, told_as_json
 
 if TYPE_CHECKING:
     from skinfab.fingertip.force.liquid import Stirred
@@ -110,7 +111,6 @@ def train(args: argparse.Namespace) -> int:
     from skinfab.files import require_apart
     from skinfab.fingertip.force.liquid_model import save_liquid, train_liquid
     from skinfab.fingertip.force.logs import once
-    from skinfab.staging import staged_folder
 
     require_apart(args.output, _TRAINED, args.logs)
     logs, notes = _read(args.logs)
@@ -145,13 +145,10 @@ def train(args: argparse.Namespace) -> int:
         "made_from": made_from,
         "notes": notes,
     }
-    with staged_folder(args.output) as folder:
+    with result_folder(args, result) as folder:
         save_liquid(trained, folder / "model.npz", made_from=made_from)
-        (folder / "result.json").write_text(json.dumps(result, indent=1, allow_nan=False) + "\n")
-    if args.json:
-        print(json.dumps(result, allow_nan=False))
+    if told_as_json(args, result):
         return 0
-    steps.say(notes)
     made = " (simulated)" if simulated else ""
     print(
         f"{model.pieces} pieces of {trained.logs} recordings{made}: a chance below {model.limit:.2g} is a liquid; of recordings held out "
@@ -183,7 +180,6 @@ def run(args: argparse.Namespace) -> int:
     from skinfab.fingertip.force.liquid import FALSE_ALARM, stirred
     from skinfab.fingertip.force.liquid_figure import draw_paths
     from skinfab.fingertip.force.liquid_model import load_liquid
-    from skinfab.staging import staged_folder
 
     require_apart(args.output, _RUN, [*args.logs, *([args.model] if args.model else [])])
     model: LiquidModel | None
@@ -201,14 +197,11 @@ def run(args: argparse.Namespace) -> int:
         "cups": [_facts(log, each) for log, each in zip(logs, found, strict=True)],
         "notes": notes,
     }
-    with staged_folder(args.output) as folder:
+    with result_folder(args, result) as folder:
         (folder / "liquid.csv").write_text(_csv(result["cups"]))
         draw_paths([(log.name, each) for log, each in zip(logs, found, strict=True)], folder / "liquid.png", simulated=simulated)
-        (folder / "result.json").write_text(json.dumps(result, indent=1, allow_nan=False) + "\n")
-    if args.json:
-        print(json.dumps(result, allow_nan=False))
+    if told_as_json(args, result):
         return 0
-    steps.say(notes)
     for log, each in zip(logs, found, strict=True):
         swings = f", swings with a period of {each.period_s:.2f} s" if each.liquid else ""
         still = "; a liquid cannot be told: hold still after stirring" if each.moves else ""

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from skinfab.cli import steps
 from skinfab.cli.bench import repeats
+from skinfab.cli.force_result import result_folder, told_as_json
 
 if TYPE_CHECKING:
     from skinfab.fingertip.force.grasp import Grasp
@@ -96,7 +97,6 @@ def train(args: argparse.Namespace) -> int:
     """Learn, judge on objects that were held out, and write the model."""
     from skinfab.files import require_apart
     from skinfab.fingertip.force.shape_study import examples, train_shapes
-    from skinfab.staging import staged_folder
 
     require_apart(args.output, _TRAINED, args.logs)
     grasps = [each for _, read in _read(args.logs) for each in read]
@@ -116,14 +116,11 @@ def train(args: argparse.Namespace) -> int:
         "confusion": held.confusion.facts(),
         "notes": list(of.notes),
     }
-    with staged_folder(args.output) as folder:
+    with result_folder(args, result) as folder:
         model.save(folder / "model.npz")
         held.confusion.draw(folder / "confusion.png", title=f"shapes by {args.features}, new objects", simulated=simulated)
-        (folder / "result.json").write_text(json.dumps(result, indent=1, allow_nan=False) + "\n")
-    if args.json:
-        print(json.dumps(result, allow_nan=False))
+    if told_as_json(args, result):
         return 0
-    steps.say(result["notes"])
     made = " (simulated)" if simulated else ""
     print(f"{len(of.found)} grasps of {result['objects']} objects{made}: {rate} right on objects held out")
     print(f"{args.output}: {', '.join(_TRAINED)}")
@@ -135,7 +132,6 @@ def run(args: argparse.Namespace) -> int:
     from skinfab.files import require_apart
     from skinfab.fingertip.force.shape import ShapeModel, decide
     from skinfab.fingertip.force.shape_figure import draw_solids
-    from skinfab.staging import staged_folder
 
     require_apart(args.output, _RUN, [*args.logs, args.model])
     model = ShapeModel.load(args.model)
@@ -150,14 +146,11 @@ def run(args: argparse.Namespace) -> int:
             notes += note
     simulated = bool(model.facts.get("simulated")) or any(fact["simulated"] for fact in facts)
     result = {"simulated": simulated, "features": model.features, "confidence": args.confidence, "objects": facts, "notes": notes}
-    with staged_folder(args.output) as folder:
+    with result_folder(args, result) as folder:
         (folder / "shapes.csv").write_text(_csv(facts))
         draw_solids(views, folder / "shape.png")
-        (folder / "result.json").write_text(json.dumps(result, indent=1, allow_nan=False) + "\n")
-    if args.json:
-        print(json.dumps(result, allow_nan=False))
+    if told_as_json(args, result):
         return 0
-    steps.say(notes)
     for fact in facts:
         print(_line(fact))
     print(f"{args.output}: {', '.join(_RUN)}")

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from skinfab.cli import steps
 from skinfab.cli.bench import repeats
+from skinfab.cli.force_result import result_folder, told_as_json
 
 if TYPE_CHECKING:
     from skinfab.fingertip.force.logs import WrenchLog
@@ -83,7 +84,6 @@ def train(args: argparse.Namespace) -> int:
     from skinfab.files import require_apart
     from skinfab.fingertip.force.labels import require_labels, with_labels
     from skinfab.fingertip.force.texture_model import save_texture, train_texture
-    from skinfab.staging import staged_folder
 
     require_apart(args.output, _TRAINED, [*args.logs, *([args.labels] if args.labels else [])])
     logs, slides, notes = _read(args.logs, quiet=args.json)
@@ -105,14 +105,11 @@ def train(args: argparse.Namespace) -> int:
         "made_from": made_from,
         "notes": notes,
     }
-    with staged_folder(args.output) as folder:
+    with result_folder(args, result) as folder:
         save_texture(trained, folder / "model.npz", made_from=made_from)
         trained.confusion.draw(folder / "confusion.png", title="Textures held out", simulated=simulated)
-        (folder / "result.json").write_text(json.dumps(result, indent=1, allow_nan=False) + "\n")
-    if args.json:
-        print(json.dumps(result, allow_nan=False))
+    if told_as_json(args, result):
         return 0
-    steps.say(notes)
     print(
         f"{len(logs)} slides of {len(trained.confusion.names)} materials{_made(simulated)}: {trained.accuracy} right on specimens held out"
     )
@@ -125,7 +122,6 @@ def run(args: argparse.Namespace) -> int:
     from skinfab.files import require_apart
     from skinfab.fingertip.force.texture_figure import draw_slides
     from skinfab.fingertip.force.texture_model import load_texture
-    from skinfab.staging import staged_folder
 
     require_apart(args.output, _RUN, [*args.logs, args.model])
     model, simulated_model = load_texture(args.model)
@@ -159,14 +155,11 @@ def run(args: argparse.Namespace) -> int:
         "failed": failed,
         "notes": notes,
     }
-    with staged_folder(args.output) as folder:
+    with result_folder(args, result) as folder:
         (folder / "texture.csv").write_text(_table(logs, decisions))
-        (folder / "result.json").write_text(json.dumps(result, indent=1, allow_nan=False) + "\n")
         draw_slides(logs, slides, decisions, folder / "texture.png", simulated=simulated)
-    if args.json:
-        print(json.dumps(result, allow_nan=False))
+    if told_as_json(args, result):
         return 1 if failed else 0
-    steps.say(notes)
     for log, d in zip(logs, decisions, strict=True):
         print(
             f"{log.name}{_made(log.simulated)}: {d.name}"

@@ -9,6 +9,7 @@ import json
 from pathlib import Path
 
 from skinfab.cli import steps
+from skinfab.cli.force_result import result_folder, told_as_json
 
 _TRAINED = ("model.npz", "result.json")
 PLACES = "places.csv"
@@ -57,7 +58,6 @@ def train(args: argparse.Namespace) -> int:
     from skinfab.fingertip.force.poses import require_alive
     from skinfab.fingertip.force.touch_model import learn_touches, read_places, save_touches
     from skinfab.fingertip.force.wrench import require_nmm
-    from skinfab.staging import staged_folder
 
     require_apart(args.output, _TRAINED, [*args.logs, args.places, *([args.tip] if args.tip else [])])
     surface, places = surface_of(args), read_places(args.places)
@@ -95,13 +95,10 @@ def train(args: argparse.Namespace) -> int:
         "made_from": made_from,
         "notes": notes,
     }
-    with staged_folder(args.output) as folder:
+    with result_folder(args, result) as folder:
         save_touches(trained, folder / "model.npz", made_from=made_from)
-        (folder / "result.json").write_text(json.dumps(result, indent=1, allow_nan=False) + "\n")
-    if args.json:
-        print(json.dumps(result, allow_nan=False))
+    if told_as_json(args, result):
         return 0
-    steps.say(notes)
     made = " (simulated)" if simulated else ""
     print(
         f"{trained.places} touches on {model.surface}{made}: places held out are found to {trained.after_mm:.2f} mm (worst "
