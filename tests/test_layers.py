@@ -39,12 +39,9 @@ def sources() -> list[Path]:
     return sorted(p for package in PACKAGES for p in (ROOT / package).rglob("*.py"))
 
 
-def imported(tree: ast.AST) -> Iterator[tuple[str, bool]]:
+def imported(tree: ast.Module) -> Iterator[tuple[str, bool]]:
     """Every module a file imports, and whether it does so when it is itself imported."""
-    top = set(ast.walk(ast.Module(body=[n for n in getattr(tree, "body", []) if not is_type_checking(n)], type_ignores=[])))
-    lazy = {inner for node in ast.walk(tree) if isinstance(node, ast.FunctionDef) for inner in ast.walk(node)}
-    for node in ast.walk(tree):
-        at_import = node in top and node not in lazy
+    for node, at_import in statements(tree.body):
         if isinstance(node, ast.Import):
             for alias in node.names:
                 yield alias.name, at_import
@@ -52,6 +49,16 @@ def imported(tree: ast.AST) -> Iterator[tuple[str, bool]]:
             assert node.level == 0, "imports are absolute here"
             for alias in node.names:
                 yield f"{node.module}.{alias.name}", at_import
+
+
+def statements(body: list[ast.stmt], at_import: bool = True) -> Iterator[tuple[ast.stmt, bool]]:
+    """Each statement, those inside others too, and whether it is run when the file is imported."""
+    for node in body:
+        yield node, at_import
+        inside = at_import and not isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef) and not is_type_checking(node)
+        for held in (node, *getattr(node, "handlers", ()), *getattr(node, "cases", ())):
+            for part in ("body", "orelse", "finalbody"):
+                yield from statements(getattr(held, part, []), inside)
 
 
 def is_type_checking(node: ast.AST) -> bool:
@@ -86,6 +93,8 @@ def backward_imports(path: Path, text: str) -> list[str]:
 
 def printing(text: str) -> list[int]:
     """Lines of a file that print."""
+    if "print" not in text:
+        return []
     calls = (n for n in ast.walk(ast.parse(text)) if isinstance(n, ast.Call))
     return [n.lineno for n in calls if isinstance(n.func, ast.Name) and n.func.id == "print"]
 
@@ -110,6 +119,12 @@ def test_every_room_has_its_floor() -> None:
         ("skinfab/skin.py", "import gcode", "skinfab imports gcode"),
         ("skinfab/mesh/io.py", "def f():\n    from gui.window import Window", "skinfab imports gui.window.Window"),
         ("skinfab/cli/make.py", "from gcode import marlin", "at once"),
+        ("skinfab/cli/make.py", "try:\n    pass\nexcept OSError:\n    import gcode", "at once"),
+        (
+            "skinfab/skin.py",
+            "def f(x):\n    with x:\n        match x:\n            case 1:\n                import gcode",
+            "skinfab imports gcode",
+        ),
         ("gcode/marlin.py", "from calibration import mocap", "gcode imports calibration.mocap"),
         ("calibration/mocap/angle.py", "import gcode.program", "calibration imports gcode.program"),
         ("skinfab/paths.py", "from skinfab.mesh.model import Mesh", "a floor above"),
