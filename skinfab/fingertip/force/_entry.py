@@ -149,7 +149,10 @@ def nearest_on_dome(
     if across2 > radius * radius and ox * axis[0] + oy * axis[1] + oz * axis[2] >= 0.0:
         scale = radius / math.sqrt(across2)
         return ox * scale, oy * scale, oz * scale
-    other = np.cross(axis, aside)
+    other = np.empty(3)  # their cross product: numba takes 5 s to compile NumPy's
+    other[0] = axis[1] * aside[2] - axis[2] * aside[1]
+    other[1] = axis[2] * aside[0] - axis[0] * aside[2]
+    other[2] = axis[0] * aside[1] - axis[1] * aside[0]
     step = 2.0 * math.pi / _RIM_STEPS
     best, least = 0.0, math.inf
     for k in range(_RIM_STEPS):
