@@ -21,7 +21,7 @@ def spirals(draw: st.DrawFn) -> ContactSpiral:
     return ContactSpiral(n=n, x=x, b=b, l=l, s=s, caps=draw(st.booleans()))
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=150, deadline=None)
 @given(spirals())
 def test_closed_forms(p: ContactSpiral) -> None:
     path = p.path()

@@ -22,7 +22,7 @@ from skinfab.tolerances import CLEARANCE_MM, PARAMETER_STEP_MM
 
 every_pattern = pytest.mark.parametrize("kind", PATTERNS)
 some = settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow])
-many = settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+many = settings(max_examples=110, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 
 #: Parts that each arc is sampled in; a line has its ends.
 PARTS = 256

@@ -26,7 +26,7 @@ PIECE = Piece("P1", np.arange(2), np.arange(4), np.array([[0, 1, 2], [0, 2, 3]])
 
 
 @pytest.mark.parametrize("kind", PATTERNS)
-@settings(max_examples=250, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=120, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(data=st.data(), x=st.floats(0, SIDE), y=st.floats(0, SIDE), angle=st.floats(-7, 7))
 def test_arcs_ink_balance_and_text(kind: str, data: st.DataObject, x: float, y: float, angle: float) -> None:
     sensor = Sensor("C1", "P1", data.draw(patterns(kind)), x, y, angle, 0)

@@ -20,7 +20,7 @@ def meanders(draw: st.DrawFn) -> StrainLines:
     return StrainLines(l1=l2 + draw(st.floats(1.4, 20)), l2=l2, b=b, lines=lines)
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=150, deadline=None)
 @given(meanders())
 def test_closed_forms(p: StrainLines) -> None:
     path = p.path()
