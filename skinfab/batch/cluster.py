@@ -75,7 +75,7 @@ def _local(workers: int) -> Iterator[Client]:
             threads_per_worker=1,
             processes=True,
             host="127.0.0.1",
-            dashboard_address=None,
+            dashboard_address="127.0.0.1:0",  # None would take port 8787 of all interfaces
             memory_limit=0,  # that of a worker itself, which only waits
             local_directory=scratch,
             silence_logs=logging.CRITICAL,

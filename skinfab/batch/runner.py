@@ -8,6 +8,7 @@ was ended or killed, so do the job under way and the process itself.
 from __future__ import annotations
 
 import ctypes
+import gc
 import json
 import os
 import resource
@@ -71,6 +72,8 @@ def serve(work: Callable[[list[str]], int]) -> None:
     # Whatever is printed here, or by a library, must not get between the answers.
     answers = os.dup(1)
     os.dup2(2, 1)
+    gc.collect()
+    gc.freeze()  # a collector that walks what was loaded would give each job a copy of it
     while select.select([0], [], [], IDLE_S)[0] and (line := sys.stdin.buffer.readline()):
         wanted = json.loads(line)
         ran = run_apart(work, wanted["words"], said=wanted["said"], time_s=wanted["time_s"], memory_mb=wanted["memory_mb"], leash=0)

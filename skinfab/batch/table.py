@@ -21,16 +21,16 @@ CSV, PAGE, OBJECT = "batch.csv", "batch.html", "batch.json"
 
 #: Figures of a job that was made, by their names in its record, and on the page.
 _FIGURES = {
-    "faces": ("faces", "{:,}"),
-    "pieces": ("pieces", "{}"),
+    "n_faces": ("faces", "{:,}"),
+    "n_pieces": ("pieces", "{}"),
     "d_mean": ("d mean", "{:.4f}"),
     "d_p99": ("d 99 %", "{:.4f}"),
     "seam_mm": ("seam, mm", "{:.0f}"),
-    "sensors": ("sensors", "{}"),
+    "n_sensors": ("sensors", "{}"),
     "ink_mm3": ("ink, mm³", "{:.0f}"),
     "print_s": ("print, s", "{:.0f}"),
-    "moulds": ("moulds", "{}"),
-    "warnings": ("warnings", "{}"),
+    "n_moulds": ("moulds", "{}"),
+    "n_warnings": ("warnings", "{}"),
 }
 _USED = {"wall_s": ("took, s", "{:.1f}"), "cpu_s": ("processor, s", "{:.1f}"), "peak_mb": ("memory, MB", "{:.0f}")}
 
@@ -103,7 +103,8 @@ def _csv(plan: Plan, outcome: Outcome) -> str:
 
 def _page(plan: Plan, outcome: Outcome, folder: Path) -> str:
     failed = [job for job in plan.jobs if outcome.records[job.name]["status"] != "made"]
-    head = ["mesh", *plan.keys, "result", *(f"#{title}" for title, _ in (*_FIGURES.values(), *_USED.values()))]
+    options = [f"--{key}" for key in plan.keys]  # a figure may have the name of a setting
+    head = ["mesh", *options, "result", *(f"#{title}" for title, _ in (*_FIGURES.values(), *_USED.values()))]
     rows = [_row(job, outcome.records[job.name], plan.keys) for job in plan.jobs]
     why = [[_link(job, _named(job)), *_settings(job, plan.keys), escape(outcome.records[job.name]["message"])] for job in failed]
     parts = [
@@ -113,7 +114,7 @@ def _page(plan: Plan, outcome: Outcome, folder: Path) -> str:
         f"<h1>Batch {escape(folder.name)}</h1>",
         f"<p>{escape(summary(outcome))}.</p>",
         *(f'<div class="warning"><p>{escape(note)}</p></div>' for note in (*plan.notes, *outcome.notes)),
-        *(["<h2>Without a result</h2>", _table(["mesh", *plan.keys, "why"], why)] if why else []),
+        *(["<h2>Without a result</h2>", _table(["mesh", *options, "why"], why)] if why else []),
         "<h2>All jobs</h2>",
         _table(head, rows),
         "<p>An empty setting is the default. d is the distortion: 4 is perfect.</p>",

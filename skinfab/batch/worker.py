@@ -24,6 +24,9 @@ from skinfab.batch.runner import Ran
 from skinfab.errors import InputError
 from skinfab.files import DISK_FULL, atomic_write, explain_os_error
 
+#: What Python, skinfab and C++ say that cannot reserve what they need.
+_SHORT = ("MemoryError", "not enough memory", "bad_alloc")
+
 #: Of what a job printed, so much is looked at, bytes: its last line says why it failed.
 _LAST_BYTES = 4096
 
@@ -189,7 +192,7 @@ def _judged(job: Job, ran: Ran | None, last: str) -> dict[str, Any]:
     used = {"wall_s": round(ran.wall_s, 3), "cpu_s": round(ran.cpu_s, 3), "peak_mb": round(ran.peak_mb, 1)}
     if ran.ended == "time":
         return {**used, "status": "time", "message": f"took longer than the {job.time_s:g} s of [limits] and was ended"}
-    short = "not enough memory" in last or "bad_alloc" in last
+    short = any(said in last for said in _SHORT)
     if ran.ended == "memory" or (job.memory_mb is not None and ran.exit != 0 and short):
         return {**used, "status": "memory", "message": f"needed more than the {job.memory_mb:g} MB of [limits] and was ended"}
     if ran.exit is None:
@@ -222,16 +225,16 @@ def _figures(stage: Path) -> dict[str, Any]:
         return {}
     return {
         "figures": {
-            "faces": report["mesh"]["n_faces"],
-            "pieces": len(report["pieces"]),
+            "n_faces": report["mesh"]["n_faces"],
+            "n_pieces": len(report["pieces"]),
             "d_mean": report["distortion"]["mean"],
             "d_p99": report["distortion"]["p99"],
             "seam_mm": report["seam_mm"],
-            "sensors": len(report["sensors"]),
+            "n_sensors": len(report["sensors"]),
             "ink_mm3": sum(each["ink_mm3"] for each in report["gcode"]),
             "print_s": sum(each["time_s"] for each in report["gcode"]),
-            "moulds": len(report["moulds"]),
-            "warnings": len(report["warnings"]),
+            "n_moulds": len(report["moulds"]),
+            "n_warnings": len(report["warnings"]),
         }
     }
 

@@ -1,0 +1,144 @@
+"""A real scheduler and two workers, which are killed; so is the client. Nothing is lost, and nothing done twice."""
+
+import json
+import logging
+import os
+import signal
+import subprocess
+import sys
+import threading
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+from batches import RUNNER, quick_job, quick_jobs, wait_for
+
+from skinfab.batch import cluster
+from skinfab.batch.job import Job
+from skinfab.batch.run import Outcome, run_batch
+from skinfab.errors import InputError
+
+
+@pytest.fixture(scope="module")
+def scheduler(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    """The address of a cluster with two workers that a nanny starts again when they die."""
+    from distributed import LocalCluster
+
+    with (
+        cluster._silent_logs(),
+        LocalCluster(
+            n_workers=2,
+            threads_per_worker=1,
+            processes=True,
+            host="127.0.0.1",
+            dashboard_address="127.0.0.1:0",
+            memory_limit=0,
+            local_directory=str(tmp_path_factory.mktemp("dask")),
+            silence_logs=logging.CRITICAL,
+        ) as local,
+    ):
+        yield local.scheduler_address
+
+
+def run(jobs: list[Job], folder: Path, scheduler: str) -> Outcome:
+    return run_batch(jobs, folder, workers=0, scheduler=scheduler, runner=RUNNER)
+
+
+def in_background(jobs: list[Job], folder: Path, scheduler: str) -> tuple[threading.Thread, list[Outcome]]:
+    outcomes: list[Outcome] = []
+    thread = threading.Thread(target=lambda: outcomes.append(run(jobs, folder, scheduler)), daemon=True)
+    thread.start()
+    return thread, outcomes
+
+
+def attempts(folder: Path, job: Job) -> list[int]:
+    """Process ids of the workers that began a job."""
+    path = folder / ".under-way" / f"{job.name}.lock"
+    return [int(line.split()[2]) for line in path.read_text().splitlines()] if path.exists() else []
+
+
+def ends(records: Mapping[str, Mapping[str, Any]]) -> Counter[str]:
+    return Counter(str(record["status"]) for record in records.values())
+
+
+def test_a_killed_worker_s_job_is_done_again_and_a_deadly_one_is_told(tmp_path: Path, scheduler: str) -> None:
+    (tmp_path / "meshes").mkdir()
+    out = tmp_path / "out"
+    jobs = quick_jobs(tmp_path / "meshes", ["sleep 600", "failed", "refused", *(f"make {k}" for k in range(8)), "sleep-once"])
+    deadly, once = jobs[0], jobs[-1]
+    thread, outcomes = in_background(jobs, out, scheduler)
+    wait_for((tmp_path / "meshes/sleep-once.begun").exists)
+    os.kill(attempts(out, once)[0], signal.SIGKILL)
+    for time in range(3):
+        wait_for(lambda time=time: len(attempts(out, deadly)) > time)
+        os.kill(attempts(out, deadly)[time], signal.SIGKILL)
+    thread.join(timeout=60)
+    (outcome,) = outcomes
+    assert ends(outcome.records) == {"made": 9, "failed": 1, "refused": 1, "lost": 1}
+    assert {name: r["attempts"] for name, r in outcome.records.items() if r["attempts"] != 1} == {deadly.name: 3, once.name: 2}
+    lines = [json.loads(line)["job"] for line in (out / "jobs.jsonl").read_text().splitlines()]
+    assert sorted(lines) == sorted(job.name for job in jobs)
+    assert {path.name for path in (out / "jobs").iterdir()} == set(lines) and not (out / ".under-way").exists()
+
+
+CLIENT = """
+import sys
+from pathlib import Path
+from batches import RUNNER, quick_job, quick_jobs
+from skinfab.batch.run import run_batch
+folder, scheduler, *texts = sys.argv[1:]
+run_batch(quick_jobs(Path(folder), texts), Path(folder) / "out", workers=0, scheduler=scheduler, runner=RUNNER)
+"""
+
+
+def test_a_killed_client_is_resumed_and_what_its_workers_still_do_is_waited_for(tmp_path: Path, scheduler: str) -> None:
+    out, texts = tmp_path / "out", ["make 1", "make 2", "make 3", "sleep 2", "failed"]
+    jobs = quick_jobs(tmp_path, texts)
+    program = [sys.executable, "-c", CLIENT, str(tmp_path), scheduler, *texts[:4]]
+    client = subprocess.Popen(program, env={**os.environ, "PYTHONPATH": str(Path(__file__).parents[1])})
+    wait_for(lambda: attempts(out, jobs[3]))
+    with pytest.raises(InputError, match="another batch is at work in"):
+        run(jobs, out, scheduler)
+    client.kill()
+    client.wait()
+    before = sum((out / "jobs" / job.name / "job.json").exists() for job in jobs)
+    (out / "jobs.jsonl").write_text((out / "jobs.jsonl").read_text() + '{"job": "torn')
+    outcome = run(jobs, out, scheduler)
+    assert ends(outcome.records) == {"made": 4, "failed": 1} and outcome.before == before
+    assert [r["attempts"] for r in outcome.records.values()] == [1] * 5  # the sleeper too was done once, by the worker of the first run
+    assert len((out / "jobs.jsonl").read_text().splitlines()) == 5
+    again = run(jobs, out, "tcp://127.0.0.1:1")  # nothing is left to do, so nobody is asked
+    assert again.before == 5 and again.records == outcome.records
+
+
+def test_what_failed_for_a_limit_is_done_again_when_that_is_raised(tmp_path: Path, scheduler: str) -> None:
+    mesh = tmp_path / "meshes"
+    mesh.mkdir()
+    jobs = [quick_job(mesh, "sleep 0.5", time_s=0.1), quick_job(mesh, "failed", time_s=0.1), quick_job(mesh, "make", time_s=60)]
+    assert ends(run(jobs, tmp_path / "out", scheduler).records) == {"time": 1, "failed": 1, "made": 1}
+    assert run(jobs, tmp_path / "out", scheduler).before == 3
+    raised = run([replace(job, time_s=60) for job in jobs], tmp_path / "out", scheduler)
+    assert raised.before == 2 and ends(raised.records) == {"made": 2, "failed": 1}
+    fewer = run(jobs[:1], tmp_path / "out", scheduler)
+    assert fewer.notes == (f"2 results in {tmp_path / 'out/jobs'} are of other meshes or settings and were left alone",)
+
+
+def test_a_full_disk_ends_the_batch(tmp_path: Path, scheduler: str) -> None:
+    with pytest.raises(InputError, match="the disk is full; free some space"):
+        run([quick_job(tmp_path, "full"), quick_job(tmp_path, "make")], tmp_path / "out", scheduler)
+    assert not (tmp_path / "out/jobs").exists() or len(list((tmp_path / "out/jobs").iterdir())) == 1
+
+
+def test_a_cluster_that_will_not_do_is_told(tmp_path: Path, scheduler: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(cluster, "CONNECT_S", 0.2)
+    jobs = quick_jobs(tmp_path, ["make"])
+    for address in ("tcp://127.0.0.1:1", "nonsense://x"):
+        with pytest.raises(InputError, match="no Dask scheduler answers at"):
+            run(jobs, tmp_path / "out", address)
+    monkeypatch.setattr(cluster, "CONNECT_S", 20.0)
+    monkeypatch.setattr(cluster, "__version__", "0.0.0")
+    with pytest.raises(InputError, match=r"has skinfab .*, and here it is 0\.0\.0"):
+        run(jobs, tmp_path / "out", scheduler)
