@@ -21,7 +21,7 @@ from skinfab.fingertip.force.liquid_model import LiquidModel, train_liquid
 from skinfab.fingertip.force.liquid_simulator import WAYS, CupScene, stir
 from skinfab.fingertip.force.logs import WrenchLog
 from skinfab.fingertip.force.wrench import SensorNoise
-from skinfab.progress import Progress, silent
+from skinfab.progress import Progress, part_of, silent
 from skinfab.rates import wilson
 
 #: How the empty cups are held.
@@ -91,27 +91,30 @@ class TermRow:
 
 
 def run(folder: Path, *, repeats: int = REPEATS, progress: Progress = silent) -> dict[str, Any]:
-    """Measure, and write liquid.csv, liquid_ablation.csv, liquid.png and liquid.txt into `folder`, which is there already.
+    """Measure, and write liquid.csv, liquid_ablation.csv, liquid_training.csv, liquid.png and liquid.txt into `folder`, which is there.
 
     Returns
     -------
     dict
-        "sentence", "notes" (what to know of the measurement), "rows" and "ablation".
+        "sentence", "notes" (what to know of the measurement), "rows", "ablation" and "training".
     """
+    from skinfab.bench import liquid_training
     from skinfab.bench.liquid_chart import draw
     from skinfab.files import atomic_write
 
     notes = [f"simulated: cups of 150 g, {CUPS} of each amount, angle and condition, {EMPTY} empty ones of each condition, 6 s each"]
     with one_processor() as alone:
         notes += [] if alone else ["this system cannot keep a process on one processor"]
-        rows = measure(repeats=repeats, progress=lambda done, what: progress(0.85 * done, what))
+        rows = measure(repeats=repeats, progress=part_of(progress, 0.0, 0.75))
     write_csv(rows, folder / "liquid.csv")
-    write_csv(without(progress=lambda done, what: progress(0.85 + 0.15 * done, what)), folder / "liquid_ablation.csv")
-    table = read_csv(folder / "liquid.csv")
-    said = sentence(table)
+    write_csv(without(progress=part_of(progress, 0.75, 0.87)), folder / "liquid_ablation.csv")
+    write_csv(liquid_training.trainings(progress=part_of(progress, 0.87, 1.0)), folder / "liquid_training.csv")
+    table, training = read_csv(folder / "liquid.csv"), read_csv(folder / "liquid_training.csv")
+    said = f"{sentence(table)} {liquid_training.sentence(training)}"
     atomic_write(folder / "liquid.txt", "\n".join([said, *notes]) + "\n")
     draw(table, folder / "liquid.png")
-    return {"sentence": said, "notes": notes, "rows": table, "ablation": read_csv(folder / "liquid_ablation.csv")}
+    ablation = read_csv(folder / "liquid_ablation.csv")
+    return {"sentence": said, "notes": notes, "rows": table, "ablation": ablation, "training": training}
 
 
 def measure(
