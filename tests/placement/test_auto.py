@@ -208,7 +208,7 @@ def test_spirals_of_the_papers_sizes_exist(s: float) -> None:
 def test_whatever_is_placed_on_pieces_with_holes_is_valid(sheet: Callable) -> None:
     # Two ways of judging: places are found on a raster and by moves, verdicts come from exact distances.
     rng, placed = np.random.default_rng(7), 0
-    for _ in range(25):
+    for _ in range(12):
         width, height = rng.integers(20, 90, size=2)
         middle, radius = rng.uniform((5, 5), (width - 5, height - 5)), rng.uniform(1, 8)
         mesh, piece = sheet(
@@ -224,4 +224,4 @@ def test_whatever_is_placed_on_pieces_with_holes_is_valid(sheet: Callable) -> No
         sensors, _ = place(mesh, [piece], material=material, seed=3, options=AutoOptions(per_piece=int(rng.integers(1, 9))))
         validate(SimpleNamespace(pieces=(piece,), sensors=sensors), material)
         placed += len(sensors)
-    assert placed > 40
+    assert placed > 20
