@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from skinfab.cli import steps
+from skinfab.cli.lag import Lag
 from skinfab.cli.record import baud
 
 if TYPE_CHECKING:
@@ -119,7 +120,7 @@ def _from_port(args: argparse.Namespace) -> tuple[tuple[Reading, ...], ArrayWatc
     from skinfab.readout.source import HostClock
 
     readings: list[Reading] = []
-    latency: list[float] = []
+    lag = Lag()
     warm_up()
     with SerialPort(args.port, baud=args.baud or BAUD) as source:
         model, notes = _model(args, tactel_columns(source.stream)[0])
@@ -127,8 +128,9 @@ def _from_port(args: argparse.Namespace) -> tuple[tuple[Reading, ...], ArrayWatc
         clock, end = HostClock(), time.monotonic() + (args.seconds or math.inf)
         try:
             while (left := end - time.monotonic()) > 0:
+                asked = clock.now()
                 if (frame := source.read(min(left, _WAIT_S))) is not None and (made := watch.step(frame)) is not None:
-                    latency.append(1000 * (clock.now() - frame.host_time))
+                    lag.add(asked, frame.host_time, clock.now())
                     readings.append(made)
                     _tell(args, made.events)
         except KeyboardInterrupt:
@@ -142,8 +144,8 @@ def _from_port(args: argparse.Namespace) -> tuple[tuple[Reading, ...], ArrayWatc
     notes += [
         f"{count} frames were {how}" for how, count in (("lost", counts.lost), ("damaged", counts.bad), ("late", counts.late)) if count
     ]
-    times = {"median": sorted(latency)[len(latency) // 2], "worst": max(latency)}
-    if (rate := watch.stream.rate_hz) and times["median"] > 1000 / rate:
+    times = lag.times_ms()
+    if (rate := watch.stream.rate_hz) and lag.live and times["median"] > 1000 / rate:
         notes.append(
             f"readings lag {times['median']:.0f} ms behind their frames, of which {rate:g} come in a second: this computer is too busy"
         )
