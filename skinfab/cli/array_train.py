@@ -40,10 +40,9 @@ def add_options(p: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Learn, judge, write, and say how good it is."""
-    from skinfab.errors import InputError
     from skinfab.files import require_apart
     from skinfab.fingertip.array.geometry import Geometry
-    from skinfab.fingertip.array.judge import better, held_out
+    from skinfab.fingertip.array.judge import better, held_out, poor
     from skinfab.fingertip.array.learn import learn, save_array
     from skinfab.fingertip.array.logs import read_array_log
     from skinfab.progress import terminal_progress
@@ -52,8 +51,7 @@ def run(args: argparse.Namespace) -> int:
     require_apart(args.output, FILES, args.logs)
     logs = [read_array_log(path) for path in args.logs]
     _require_different(logs)
-    if other := next((log for log in logs if log.shape != logs[0].shape), None):
-        raise InputError(f"{other.name} is of {other.shape} tactels and {logs[0].name} of {logs[0].shape}; give logs of one array")
+    _require_alike(args.logs, logs)
     rings, stripes = logs[0].shape
     pitch = args.ring_pitch or Geometry.of_density(f"{rings}x{stripes}").ring_pitch
     geometry = Geometry(rings, stripes, pitch, args.finger_radius, args.skin, args.fill)
@@ -65,7 +63,9 @@ def run(args: argparse.Namespace) -> int:
         progress(1.0, "done")
     won, worse = better(errors)
     model = learned.model if won else learned.drawn
-    result = _facts(logs, model, errors, [*learned.notes, *_poor(won, worse)], "learned" if won else "drawn")
+    kept = "learned" if won else "drawn"
+    said = [*learned.notes, *_poor(won, worse), *_wrong(poor(errors, kept), args.skin)]
+    result = _facts(logs, model, errors, said, kept)
     with staged_folder(args.output) as folder:
         save_array(folder / "model.npz", model, {key: result[key] for key in ("made_from", "simulated", "errors", "noise", "kept")})
         _write(folder, model, errors, result)
@@ -90,6 +90,17 @@ def _require_different(logs: Sequence[ArrayLog]) -> None:
         seen[log.sha256] = log.name
 
 
+def _require_alike(paths: Sequence[Path], logs: Sequence[ArrayLog]) -> None:
+    from skinfab.errors import InputError
+
+    for path, log in zip(paths, logs, strict=True):
+        if log.shape != logs[0].shape:
+            (rings, stripes), (other_rings, other_stripes) = log.shape, logs[0].shape
+            raise InputError(
+                f"{path} is of {rings} x {stripes} tactels and {paths[0]} of {other_rings} x {other_stripes}; give logs of one array"
+            )
+
+
 def _poor(won: bool, worse: Sequence[str]) -> list[str]:
     """What to say where learning does not pay."""
     if not won:
@@ -98,6 +109,16 @@ def _poor(won: bool, worse: Sequence[str]) -> list[str]:
             "modulus that was learned; press more places, all over the array"
         ]
     return [f"what was learned is no better than the array as drawn in {name}; press more places, all over the array" for name in worse]
+
+
+def _wrong(poor: Sequence[str], skin_mm: float) -> list[str]:
+    """What to say of a model that is no good."""
+    if not poor:
+        return []
+    return [
+        f"on logs that were held out {'; '.join(poor)}: do not trust this model; is --skin ({skin_mm:g} mm) what lies over the electrodes, "
+        "are --finger-radius and --ring-pitch this array's, and were the places and forces those of these presses?"
+    ]
 
 
 def _facts(logs: Sequence[ArrayLog], model: ArrayModel, errors: Sequence[Error], said: Sequence[str], kept: str) -> dict[str, Any]:

@@ -218,7 +218,8 @@ def test_logs_that_cannot_be_learned_from(made: Path, tmp_path: Path, capsys: py
     assert main(["array", "train", str(one), *out]) == 1 and "give two or more" in capsys.readouterr().err
     dense = presses(Device(Geometry.of_density("8x16")), 20)
     write_log(dense, tmp_path / "dense.csv")
-    assert main(["array", "train", str(one), str(tmp_path / "dense.csv"), *out]) == 1 and "logs of one array" in capsys.readouterr().err
+    assert main(["array", "train", str(one), str(tmp_path / "dense.csv"), *out]) == 1
+    assert f"{tmp_path}/dense.csv is of 8 x 16 tactels and {one} of 8 x 8; give logs of one array" in capsys.readouterr().err
     assert not (tmp_path / "o").exists()
 
 

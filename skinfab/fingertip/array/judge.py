@@ -24,6 +24,8 @@ FloatArray = NDArray[np.float64]
 WAYS = ("published", "drawn", "learned")
 #: What is judged, and its unit.
 QUANTITIES = {"axial": "mm", "angle": "deg", "force": "part", "line": "deg"}
+#: Forces of a model of the right skin are held out within 3 %, as drawn within 4: from this part on it is of another.
+FORCE_POOR = 0.1
 
 
 @dataclass(frozen=True)
@@ -85,6 +87,27 @@ def better(errors: Sequence[Error]) -> tuple[bool, tuple[str, ...]]:
     ratio = {name: by["learned", name] / max(by["drawn", name], 1e-300) for name in QUANTITIES if ("learned", name) in by}
     whole = math.prod(ratio[name] for name in ("axial", "angle") if name in ratio)
     return whole < 1, tuple(name for name, value in ratio.items() if value >= 1)
+
+
+def poor(errors: Sequence[Error], way: str) -> tuple[str, ...]:
+    """What speaks against a way on logs held out: quantities in which the published way errs less, and forces that are far off.
+
+    Examples
+    --------
+    >>> def error(way, quantity, rms): return Error(way, quantity, rms, rms, rms, rms, 10)
+    >>> errors = [error("published", "axial", 0.39), error("learned", "axial", 0.451), error("learned", "force", 0.93)]
+    >>> poor(errors, "learned")
+    ('axial errs by 0.451 mm, 0.39 as published', 'force errs by 93 %')
+    """
+    by = {(each.way, each.quantity): each.rms for each in errors}
+    said = [
+        f"{name} errs by {by[way, name]:.3g} {unit}, {by['published', name]:.3g} as published"
+        for name, unit in QUANTITIES.items()
+        if by.get((way, name), 0.0) >= by.get(("published", name), math.inf)
+    ]
+    if (force := by.get((way, "force"), 0.0)) > FORCE_POOR:
+        said.append(f"force errs by {100 * force:.0f} %")
+    return tuple(said)
 
 
 def _of(log: ArrayLog, *, rods: bool) -> NDArray[np.int64]:

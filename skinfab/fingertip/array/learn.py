@@ -38,6 +38,8 @@ _SHIFT_SE, _SHIFT_MM, _SHIFT_DEG = 4.0, 0.15, 1.5
 SOFT = (0.1, 10.0)
 #: What the search may come to, as parts of the drawn depth.
 _DEPTHS = (0.5, 1.8)
+#: It stops at steps of this, mm.
+_DEPTH_MM = 5e-3
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,11 +117,17 @@ def learn(logs: Sequence[ArrayLog], geometry: Geometry) -> Learned:
         presses.Z, _unit(presses.places, geometry, geometry.skin, nominal.rubber.poisson) * presses.forces[:, None, None], math.inf
     )
     drawn = replace(nominal, rubber=replace(nominal.rubber, young=1 / plain))
-    return Learned(ArrayModel(fitted, Rubber(1 / scale, ratio), gains), drawn, shift, tuple(_notes(shift, 1 / scale)))
+    return Learned(ArrayModel(fitted, Rubber(1 / scale, ratio), gains), drawn, shift, tuple(_notes(shift, 1 / scale, depth, geometry.skin)))
 
 
-def _notes(shift: tuple[float, float], young: float) -> list[str]:
+def _notes(shift: tuple[float, float], young: float, depth: float, drawn: float) -> list[str]:
     notes = []
+    least, most = (part * drawn for part in _DEPTHS)
+    if not least + _DEPTH_MM < depth < most - _DEPTH_MM:
+        notes.append(
+            f"a depth of {depth:.2f} mm is the {'least' if depth < drawn else 'most'} that is searched for about the {drawn:g} mm given; "
+            "presses ask for still another: give the skin's thickness"
+        )
     if any(shift):
         notes.append(
             f"the labels lie {shift[0]:+.2f} mm along and {math.degrees(shift[1]):+.1f} degrees around from where the array finds the "
@@ -218,7 +226,7 @@ def _skin(presses: _Presses, geometry: Geometry, *, free: bool) -> tuple[tuple[f
         np.array([geometry.skin, 0.45]),
         method="Nelder-Mead",
         bounds=[(_DEPTHS[0] * geometry.skin, _DEPTHS[1] * geometry.skin), (0.0, 0.5)],
-        options={"xatol": 5e-3, "fatol": 1e-5, "maxfev": 80},
+        options={"xatol": _DEPTH_MM, "fatol": 1e-5, "maxfev": 80},
     )
     return (float(found.x[0]), float(found.x[1])), float(found.fun)
 
