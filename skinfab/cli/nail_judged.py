@@ -7,10 +7,13 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from skinfab.cli.nail_errors import mean_errors
+
 if TYPE_CHECKING:
     from skinfab.fingertip.nail.labels import Label
     from skinfab.fingertip.nail.live import Told
     from skinfab.fingertip.nail.pace import Pace
+    from skinfab.fingertip.nail.reader import Decision
     from skinfab.readout.logs.log import Log
 
 
@@ -28,26 +31,56 @@ def judged(path: Path, log: Log, told: Sequence[Told], samples: int, content: An
     from skinfab.fingertip.nail.touches import touches_of
 
     fresh, facts, notes = _fresh(path, log, content, pace)
-    unknown = sorted({each.label for each in fresh} - set(content.model.names))
+    labels = [each for each, _ in fresh]
+    unknown = sorted({each.label for each in labels} - set(content.model.names))
     if unknown:
-        of = sum(each.label in unknown for each in fresh)
+        of = sum(each.label in unknown for each in labels)
         notes.append(f"the model knows no {', '.join(unknown)}: {of} of the {len(fresh)} trials can never be right")
-    right, groups = [], []
-    for each, name in zip(fresh, touches_of(fresh)[0], strict=True):
-        # Of the last reading: half a reading to spare, so that a window that just fits does.
-        first, last = each.start_s + (samples - 1.5) / pace.rate_hz, each.end_s - 0.5 / pace.rate_hz
-        said = Counter(one.decision.label for one in told if one.decision and first <= one.time_s <= last)
-        if said:
-            right.append(said.most_common(1)[0][0] == each.label)
+    published = hasattr(content.model, "samples")
+    right, groups, off = [], [], []
+    for (each, values), name in zip(fresh, touches_of(labels)[0], strict=True):
+        if published:
+            said = _by_histograms(content.model, values)
+        else:
+            # Of the last reading: half a reading to spare, so that a window that just fits does.
+            first, last = each.start_s + (samples - 1.5) / pace.rate_hz, each.end_s - 0.5 / pace.rate_hz
+            inside = [one.decision for one in told if one.decision and first <= one.time_s <= last]
+            said = Counter(one.label for one in inside).most_common(1)[0][0] if inside else None
+            off.append(_off(inside, each))
+        if said is not None:
+            right.append(said == each.label)
             groups.append(name)
     if without := len(fresh) - len(right):
-        what = f"{without} of the {len(fresh)} trials have" if right else "no trial has"
-        notes.append(
-            f"{what} a window of {samples} readings that could be decided, and {'count' if right else 'counts'} nowhere; see --window"
+        what = f"{without} of the {len(fresh)} trials have no" if right else "no trial has"
+        need, do = (
+            (f"{samples} readings of all six channels, which the published method needs", "record longer ones")
+            if published
+            else (f"{'' if right else 'a '}window of {samples} readings that could be decided", "see --window")
         )
+        notes.append(f"{what} {need}, and {'count' if right else 'counts'} nowhere; {do}")
     rate = grouped_accuracy(np.array(right), groups) if right else None
     accuracy = {"value": rate.value, "low": rate.low, "high": rate.high} if rate else {"value": None, "low": None, "high": None}
-    return {"labels": {"file": path.name, "trials": len(right), "right": sum(right), **facts, "accuracy": accuracy}}, notes
+    counts = {"file": path.name, "trials": len(right), "right": sum(right), **facts, "accuracy": accuracy}
+    return {"labels": {**counts, **mean_errors(np.array(off).reshape(-1, 3))}}, notes
+
+
+def _by_histograms(model: Any, values: Any) -> str | None:
+    """What the published method says of a trial, by windows that begin with it."""
+    from skinfab.fingertip.nail.train import by_histograms, whole
+
+    return str(model.names[by_histograms(model, values)]) if len(whole(values)) >= model.samples else None
+
+
+def _off(inside: Sequence[Decision], label: Label) -> tuple[float, float, float]:
+    """How far the contacts among a trial's decisions are off what was aimed at, in the mean: degrees, mm, part of the force."""
+    import numpy as np
+
+    from skinfab.fingertip.nail.regress import off_by, target_of, targets_of
+
+    of = targets_of([label])[0]
+    each = np.array([off_by(target_of(one.continuous), of) for one in inside if one.contact]).reshape(-1, 3)
+    angle, place, force = (float(column.mean()) if len(column) else float("nan") for column in each.T)
+    return angle, place, force
 
 
 def participants_of(content: Any) -> list[str]:
@@ -55,8 +88,8 @@ def participants_of(content: Any) -> list[str]:
     return [str(each) for each in content.made_from.get("participants") or [] if each]
 
 
-def _fresh(path: Path, log: Log, content: Any, pace: Pace) -> tuple[list[Label], dict[str, int], list[str]]:
-    """The rows of this log that the model did not learn from, how many there are of others, and what is to be said."""
+def _fresh(path: Path, log: Log, content: Any, pace: Pace) -> tuple[list[tuple[Label, Any]], dict[str, int], list[str]]:
+    """The rows of this log that the model did not learn from, with their readings, how many there are of others, and what is to be said."""
     from skinfab.errors import InputError
     from skinfab.fingertip.nail.doubles import without_doubles
     from skinfab.fingertip.nail.labels import evenly, read_labels, rows_of, to_the_end
@@ -79,7 +112,7 @@ def _fresh(path: Path, log: Log, content: Any, pace: Pace) -> tuple[list[Label],
     if learned is None and kept is None:
         notes.append("the model does not say which trials it learned from; where they are among these, more is right than of new ones")
     fresh = [
-        each
+        (each, values[of])
         for each, of in zip(own, at, strict=True)
         if of is not None
         and not any(each.start_s < end and start < each.end_s for start, end in spans)

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from skinfab.cli import steps
+from skinfab.cli.nail_errors import off_line
 from skinfab.cli.nail_judged import judged, participants_of
 from skinfab.cli.record import baud
 
@@ -269,7 +270,9 @@ def _lines(result: dict[str, Any]) -> list[str]:
     if labels := result.get("labels"):
         rate = labels["accuracy"]
         share = "-" if rate["value"] is None else f"{100 * rate['value']:.1f} % [{100 * rate['low']:.1f}, {100 * rate['high']:.1f}]"
-        lines.append(f"{labels['right']} of {labels['trials']} trials that the model did not learn from are right: {share}")
+        lines.append(
+            f"{labels['right']} of {labels['trials']} trials that the model did not learn from are right: {share}{off_line(labels)}"
+        )
     if latency := result.get("latency_ms"):
         lines.append(
             f"from the last reading's arrival to the decision: {latency['median']:.2f} ms (median), {latency['p99']:.2f} (99 %), "

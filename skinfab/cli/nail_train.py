@@ -5,11 +5,11 @@ from __future__ import annotations
 import argparse
 import hashlib
 import json
-import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from skinfab.cli import steps
+from skinfab.cli.nail_errors import mean_errors, off_line
 
 if TYPE_CHECKING:
     from skinfab.fingertip.nail.labels import Trial
@@ -141,14 +141,15 @@ def _split_by(trials: list[Trial], across: bool) -> str:
 
 
 def _facts(held: Held) -> dict[str, Any]:
+    import numpy as np
+
     from skinfab.fingertip.confusion import grouped_accuracy
 
     rate = grouped_accuracy(held.right, held.groups)
     return {
         **held.confusion.facts(),
         "accuracy": {"value": rate.value, "low": rate.low, "high": rate.high},
-        "mean_angle_error_deg": _mean(held.angle_deg),
-        "mean_place_error_mm": _mean(held.place_mm),
+        **mean_errors(np.column_stack([held.angle_deg, held.place_mm, held.force_part])),
         "confidence": _confidence(held),
     }
 
@@ -159,13 +160,6 @@ def _confidence(held: Held) -> dict[str, float] | None:
 
     told = np.isfinite(held.confidence)
     return {"mean": float(held.confidence[told].mean()), "right": float(held.right[told].mean())} if told.any() else None
-
-
-def _mean(values: Any) -> float | None:
-    import numpy as np
-
-    known = values[np.isfinite(values)]
-    return float(known.mean()) if len(known) else None
 
 
 def _lines(result: dict[str, Any], held: dict[str, Held]) -> list[str]:
@@ -181,9 +175,7 @@ def _lines(result: dict[str, Any], held: dict[str, Held]) -> list[str]:
         facts = result["held_out"][name]
         rate = facts["accuracy"]
         line = f"  {name}: {100 * rate['value']:.1f} % right [{100 * rate['low']:.1f}, {100 * rate['high']:.1f}]"
-        for key, unit in (("mean_angle_error_deg", "degrees"), ("mean_place_error_mm", "mm")):
-            if facts[key] is not None and math.isfinite(facts[key]):
-                line += f", off by {facts[key]:.1f} {unit} in the mean"
+        line += off_line(facts)
         if facts["confidence"]:
             line += f", confidence {facts['confidence']['mean']:.2f} where {facts['confidence']['right']:.2f} of the contacts are right"
         lines.append(line)

@@ -20,7 +20,7 @@ from skinfab.cli.nail_port import _Speaker
 from skinfab.cli.nail_run import _facts
 from skinfab.fingertip.nail.live import Told, decide_log
 from skinfab.fingertip.nail.model_file import load_nail
-from skinfab.fingertip.nail.pace import pace_of
+from skinfab.fingertip.nail.pace import pace_of_log
 from skinfab.fingertip.nail.patterns import TESTS
 from skinfab.fingertip.nail.reader import Decision
 from skinfab.fingertip.nail.regress import Continuous
@@ -70,7 +70,7 @@ def test_train(logs: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], m
     if method == "published":  # its window is what it learned from
         log = str(logs / "participant-1.csv")
         assert main(["nail", "run", str(tmp_path / "m.npz"), log, "--window", "33", "-o", str(tmp_path / "o")]) == 2
-        assert "decides on the 256 readings that m.npz learned from; leave --window out" in capsys.readouterr().err
+        assert "decides on the 243 readings that m.npz learned from; leave --window out" in capsys.readouterr().err
     assert (tmp_path / "m.npz").read_bytes()[:2] == b"PK" and [each.name for each in tmp_path.iterdir()] == ["m.npz"]
 
 
@@ -295,8 +295,8 @@ Asked = Callable[[list[str]], tuple[dict[str, Any], list[str]]]
 def judged_on(model: Path, plain: Path) -> Asked:
     """What a table's trials of that log come to."""
     content, log = load_nail(model), read_log(plain)
-    pace = pace_of(log.recording)
-    told, _ = decide_log(content.model, log.recording, samples=33, every=64, pace=pace)
+    pace = pace_of_log(log)
+    told, _ = decide_log(content.model, log.recording, samples=33, every=64, pace=pace, regression=content.regression)
 
     def ask(table: list[str]) -> tuple[dict[str, Any], list[str]]:
         path = plain.parent / "l.csv"
@@ -325,7 +325,35 @@ def test_a_table_that_does_not_go_with_the_log_is_told(logs: Path, judged_on: As
     assert "the model knows no thumb: 2 of the 12 trials can never be right" in notes
     short = [",".join([*row[:2], f"{float(row[1]) + 0.01:.6f}", *row[3:]]) for row in own]
     labels, notes = judged_on([head, *short])
+    assert labels["mean_place_error_mm"] is None
     assert labels["trials"] == 0 and "no trial has a window of 33 readings that could be decided, and counts nowhere; see --window" in notes
+
+
+def test_trials_in_which_nothing_could_be_decided_are_told(logs: Path, judged_on: Asked) -> None:
+    head, *rows = (logs / "labels.csv").read_text().splitlines()[1:]
+    own = [row.split(",") for row in rows if row.startswith("participant-1.csv") and ",test," in row]
+    own[0][2] = f"{float(own[0][1]) + 0.01:.6f}"
+    labels, notes = judged_on([head, *map(",".join, own)])
+    assert labels["trials"] == 11 and 0.3 < labels["mean_place_error_mm"] < 3 and labels["mean_angle_error_deg"] is None
+    assert "1 of the 12 trials have no window of 33 readings that could be decided, and count nowhere; see --window" in notes
+
+
+def test_the_published_method_judges_trials_that_lack_some_frames(logs: Path, plain: Path, tmp_path: Path) -> None:
+    """It learned from whole trials; a log of which one frame in fifty was lost has its trials counted all the same."""
+    model, (head, *rows) = tmp_path / "p.npz", plain.read_text().splitlines()
+    options = ["--participant", "1", "--method", "published"]
+    assert main(["nail", "train", str(logs / "labels.csv"), *options, "-o", str(model)]) == 0
+    kept = np.random.default_rng(0).uniform(size=len(rows)) > 0.02
+    for name, lines in (("lost.csv", [row for row, there in zip(rows, kept, strict=True) if there]), ("cut.csv", rows[::2])):
+        (tmp_path / name).write_text("\n".join([head, *lines]) + "\n")
+        table = (logs / "labels.csv").read_text().replace("participant-1.csv", name)
+        (tmp_path / "l.csv").write_text(table)
+        log, content = read_log(tmp_path / name), load_nail(model)
+        facts, notes = judged(tmp_path / "l.csv", log, [], 243, content, pace_of_log(log))
+        if name == "lost.csv":
+            assert facts["labels"]["trials"] == 12 and facts["labels"]["right"] >= 6 and not any("count nowhere" in note for note in notes)
+        else:
+            assert facts["labels"]["trials"] == 0 and any("no trial has 243 readings of all six channels" in note for note in notes)
 
 
 def test_what_a_port_says_aloud(capsys: pytest.CaptureFixture[str]) -> None:

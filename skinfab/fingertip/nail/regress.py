@@ -97,6 +97,12 @@ def continuous_of(target: FloatArray) -> Continuous:
     return Continuous(math.degrees(math.atan2(s, c)) / 2 % 180, x, y, math.exp(log_force) if log_force == log_force else math.nan)
 
 
+def target_of(found: Continuous) -> FloatArray:
+    """What is said of a contact as a target (5,): the other way round than `continuous_of`."""
+    twice = math.radians(2 * found.angle_deg)
+    return np.array([math.cos(twice), math.sin(twice), found.x_mm, found.y_mm, math.log(found.force_n)])
+
+
 def angle_apart(a_deg: ArrayLike, b_deg: ArrayLike) -> FloatArray:
     """How far two directions differ, 0 to 90 degrees: an edge has no front.
 
@@ -106,6 +112,19 @@ def angle_apart(a_deg: ArrayLike, b_deg: ArrayLike) -> FloatArray:
     [3.0, 90.0]
     """
     return np.abs((np.asarray(a_deg, dtype=float) - np.asarray(b_deg, dtype=float) + 90) % 180 - 90)
+
+
+def off_by(found: FloatArray, target: FloatArray) -> tuple[float, float, float]:
+    """How far what is told (5,) lies off a target (5,): degrees, mm, part of the force; NaN where either says nothing.
+
+    Examples
+    --------
+    >>> told, so = np.array([1.0, 0.0, 3.0, 4.0, math.log(1.5)]), np.array([-1.0, 0.0, 0.0, 0.0, 0.0])
+    >>> [round(each, 9) for each in off_by(told, so)]
+    [90.0, 5.0, 0.5]
+    """
+    angle = float(angle_apart(continuous_of(found).angle_deg, continuous_of(target).angle_deg))
+    return angle, float(np.linalg.norm(found[2:4] - target[2:4])), abs(math.exp(found[4] - target[4]) - 1)
 
 
 class Regression:

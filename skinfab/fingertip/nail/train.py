@@ -31,7 +31,7 @@ from skinfab.fingertip.nail.phasors import (
     turns,
 )
 from skinfab.fingertip.nail.published import modes
-from skinfab.fingertip.nail.regress import Regression, angle_apart, continuous_of, learnable, targets_of
+from skinfab.fingertip.nail.regress import Regression, learnable, off_by, targets_of
 from skinfab.fingertip.nail.touches import touches_of
 from skinfab.fingertip.nail.units import CHANNELS
 from skinfab.fingertip.splits import Split, group_folds, leave_one_out
@@ -43,6 +43,8 @@ IntArray = NDArray[np.int64]
 WINDOW = 33
 #: The paper's window, for the published method.
 PUBLISHED_WINDOW = 1024
+#: It learns so much of the shortest trial: a single frame that is lost in as long a one would leave none to be asked about.
+_SPARED = 0.95
 FOLDS = 5
 #: Channels that are saturated in more of the readings are told of.
 _SATURATED = 0.01
@@ -95,7 +97,7 @@ class Prepared:
         )
 
     def fit_published(self, rows: IntArray) -> HistogramModel:
-        """The published model of some of the trials, each cut to the paper's 1024 readings, or to the shortest trial.
+        """The published model of some of the trials, each cut to the paper's 1024 readings, or to a little less than the shortest trial.
 
         Raises
         ------
@@ -107,12 +109,13 @@ class Prepared:
                 f"channel {', '.join(np.array(CHANNELS)[~there])} has too few readings in some trials, or stands still, and the published "
                 "method needs all six; mend it, or use --method improved"
             )
-        samples = min(PUBLISHED_WINDOW, *(len(_whole(each.values)) for each in self.trials))
+        samples = min(PUBLISHED_WINDOW, *(int(_SPARED * len(whole(each.values))) for each in self.trials))
         if samples < SHORTEST:
             raise InputError(
-                f"a trial has {samples} readings of all six channels, and the published method needs {SHORTEST}; record it again"
+                f"a trial has fewer than {SHORTEST / _SPARED:.0f} readings of all six channels, which the published method needs; record "
+                "it again"
             )
-        windows = np.array([_whole(self.trials[k].values)[:samples] for k in rows])
+        windows = np.array([whole(self.trials[k].values)[:samples] for k in rows])
         return fit_histograms(self.names, self.classes[rows], windows, rate_hz=self.rate_hz)
 
 
@@ -126,8 +129,8 @@ class Held:
     groups : tuple of n
         Which cases are not independent of each other.
     right : (n,) bool
-    angle_deg, place_mm : (n,) float
-        Errors of the regression against the labels; NaN where there is none.
+    angle_deg, place_mm, force_part : (n,) float
+        Errors of the regression against the labels, the force's as a part of it; NaN where there is none.
     confidence : (n,) float
         NaN without contact, and of the published method, which knows none.
     """
@@ -137,6 +140,7 @@ class Held:
     right: NDArray[np.bool_]
     angle_deg: FloatArray
     place_mm: FloatArray
+    force_part: FloatArray
     confidence: FloatArray
 
 
@@ -289,8 +293,9 @@ def judge(made: Prepared, splits: Sequence[Split], *, samples: int | None = WIND
     names = [each.label.participant for each in made.trials] if across else _groups(made.trials)
     for train, test in splits:
         if published:
-            decided = [_by_histograms(made.fit_published(train), made.trials[k].values) for k in test]
-            estimates = np.full((len(test), 3), np.nan)
+            model = made.fit_published(train)
+            decided = [by_histograms(model, made.trials[k].values) for k in test]
+            estimates = np.full((len(test), 4), np.nan)
         else:
             decided, estimates = _by_phasors(made, train, test, samples, across)
         truth += [made.names[made.classes[k]] for k in test]
@@ -302,13 +307,14 @@ def judge(made: Prepared, splits: Sequence[Split], *, samples: int | None = WIND
     return Held(Confusion.of(truth, said, made.names), tuple(groups), right, *both.T)
 
 
-def _whole(values: FloatArray) -> FloatArray:
+def whole(values: FloatArray) -> FloatArray:
     """The rows that have all channels: a histogram does not mind what lies between them."""
     return values[np.isfinite(values).all(axis=1)]
 
 
-def _by_histograms(model: HistogramModel, values: FloatArray) -> int:
-    values = _whole(values)
+def by_histograms(model: HistogramModel, values: FloatArray) -> int:
+    """What most of a trial's windows say, of readings (n, 6) that have one: from the first on, gaps closed up."""
+    values = whole(values)
     count = len(values) // model.samples
     return int(modes(model.decide(values[: count * model.samples].reshape(count, model.samples, 6))[None])[0])
 
@@ -317,7 +323,7 @@ def _by_phasors(made: Prepared, train: IntArray, test: IntArray, samples: int | 
     model = made.fit(train, across=across)
     labels = [made.trials[k].label for k in train]
     regression = Regression(model, learnable(targets_of(labels))[0])
-    decided, errors = [], np.full((len(test), 3), np.nan)
+    decided, errors = [], np.full((len(test), 4), np.nan)
     for row, k in enumerate(test):
         trial = made.trials[k]
         window = without_frozen(np.where(trial.saturated, np.nan, trial.values)[:samples])
@@ -331,7 +337,5 @@ def _by_phasors(made: Prepared, train: IntArray, test: IntArray, samples: int | 
         decided.append(int(decision.classes[0]))
         target = targets_of([trial.label])[0]
         found = own.estimate(usable.features(drive))[0]
-        errors[row, 0] = angle_apart(continuous_of(found).angle_deg, continuous_of(target).angle_deg)
-        errors[row, 1] = np.linalg.norm(found[2:4] - target[2:4])
-        errors[row, 2] = decision.confidence[0] if decision.contact[0] else np.nan
+        errors[row] = *off_by(found, target), decision.confidence[0] if decision.contact[0] else np.nan
     return decided, errors

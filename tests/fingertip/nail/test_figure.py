@@ -26,3 +26,28 @@ def test_all_kinds_of_decisions(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     draw_run(told[:1], ["none", "edge"], tmp_path / "m.png", title="a log", simulated=False)
     assert titles == ["a log (simulated)", "a log"]
     assert all(path.read_bytes()[:4] == b"\x89PNG" for path in tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("found", "panels"),
+    [
+        (Continuous(90.0, 1.0, 2.0, math.nan), ["confidence", "direction, deg", "foot or pin, mm"]),
+        (Continuous(math.nan, 1.0, 2.0, 0.5, "low"), ["confidence", "foot or pin, mm", "force, N"]),
+        (Continuous(), ["confidence"]),
+        (None, []),
+    ],
+    ids=["edges", "pins with forces", "classes alone", "published"],
+)
+def test_what_is_not_known_has_no_panel(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, found: Continuous | None, panels: list[str]
+) -> None:
+    drawn: list[str] = []
+
+    def looked_at(self: matplotlib.figure.Figure, path: Path) -> None:
+        drawn.extend(axes.get_ylabel() for axes in self.axes)
+        path.write_bytes(b"PNG")
+
+    monkeypatch.setattr(matplotlib.figure.Figure, "savefig", looked_at)
+    decision = Decision("pin", 0.9 if found else math.nan, True, False, found or Continuous())
+    draw_run([Told(0.1 * k, decision, 169.0, 0.0) for k in range(3)], ["none", "pin"], tmp_path / "n.png", title="a", simulated=True)
+    assert drawn == ["", *panels]
