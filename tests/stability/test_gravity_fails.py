@@ -13,7 +13,7 @@ from skinfab.fingertip.force.gravity import (
     published_centre,
     require_certain,
 )
-from skinfab.fingertip.force.gravity_model import centre_with, learn_hand
+from skinfab.fingertip.force.gravity_model import centre_with, learn_hand, mass_with
 from skinfab.fingertip.force.gravity_simulator import PAPER_TRUTH, HandScene, directions, hold
 from skinfab.fingertip.force.liquid import stirred
 from skinfab.fingertip.force.liquid_simulator import stir
@@ -199,3 +199,15 @@ def test_a_few_narrow_poses_with_something_held_pass_for_an_offset_that_drifted_
     other = poses_of(hold(seed=1, scene=DRIFTING, weighing=0).log)
     with pytest.raises(RefusedError, match=r"^two\.csv \(2 poses\): the empty hand feels a weight"):
         learn_alike([other, two], ["wide.csv", "two.csv"])
+
+
+def test_one_weighing_shows_no_drift_and_states_too_little_and_two_state_enough() -> None:
+    apart = np.zeros((2, 12))
+    for seed in range(12):
+        weighings = [poses_of(hold(seed=seed, scene=DRIFTING, weighing=k).log) for k in range(2)]
+        held = hold(seed=seed, scene=DRIFTING)
+        for k in range(2):
+            found = mass_with(learn_hand(weighings[: k + 1]), poses_of(held.log))
+            apart[k, seed] = abs(found.kg - held.mass_kg) / found.sd_kg
+    assert np.median(apart[0]) > 3  # run says of such a model that its uncertainty leaves the drift out
+    assert (apart[1] < 1.96).sum() >= 10  # 95 % is stated
