@@ -8,6 +8,7 @@ triangle would collapse, so a start without flips stays without.
 
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import dataclass
 
 import numpy as np
@@ -102,6 +103,14 @@ class IsometricSolver:
         self._cholesky: Cholesky | None = None
         self._discarded = 0
         self._join(np.empty((0, 3), dtype=np.int64))
+
+    def reopened(self, F: NDArray[np.int64], n: int) -> IsometricSolver:
+        """For the same triangles joined otherwise, (m, 3) of n vertices: their shapes are not measured anew."""
+        other = copy(self)
+        other.F, other.n = np.ascontiguousarray(F), n
+        other._cholesky, other._discarded = None, 0
+        other._join(np.empty((0, 3), dtype=np.int64))
+        return other
 
     @property
     def factorisations(self) -> int:

@@ -11,7 +11,6 @@ from skinfab.flatten.laplacian import intrinsic
 from skinfab.mesh.model import Mesh
 from skinfab.seams.cut import OpenPiece, mesh_edges
 from skinfab.seams.graph import edge_graph, shortest_tree, trace
-from skinfab.seams.release import Way
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -58,46 +57,6 @@ def grow_dart(mesh: Mesh, piece: OpenPiece, d: FloatArray, weight: FloatArray) -
         return np.zeros(0, dtype=np.int64)
     path = trace(seen.before, int(np.argmax(_worst(seen))))
     return mesh_edges(mesh, piece, piece.topology.edge_ids(path))
-
-
-def dart_ways(mesh: Mesh, piece: OpenPiece, d: FloatArray, weight: FloatArray, *, count: int, apart: float) -> list[Way]:
-    """Up to `count` ways for a dart, each from the boundary to another bad spot of a piece.
-
-    In turn by excess, curvature and distance as in `grow_dart`; by excess alone; by excess and distance.
-
-    Parameters
-    ----------
-    mesh, piece, d, weight
-        As for `grow_dart`.
-    count : int
-    apart : float, mm
-        No two of the spots are nearer to each other.
-
-    Returns
-    -------
-    list of Way
-    """
-    seen = _look(mesh, piece, d, weight)
-    if seen is None:
-        return []
-    scores = [_worst(seen), *(np.where(seen.on_boundary, -np.inf, s) for s in (seen.excess, seen.excess * seen.distance))]
-    at = mesh.V[piece.vertices]
-    paths = []
-    for k in range(count):
-        tip = int(np.argmax(scores[k % 3]))
-        if not np.isfinite(scores[k % 3][tip]):
-            break
-        near = np.linalg.norm(at - at[tip], axis=1) < apart
-        near[tip] = True
-        for score in scores:
-            score[near] = -np.inf
-        pairs = trace(seen.before, tip)
-        paths.append(np.r_[pairs[::-1, 1], tip])
-    if not paths:
-        return []
-    edges = piece.topology.edge_ids(np.concatenate([np.stack([path[:-1], path[1:]], axis=1) for path in paths]))
-    bounds = np.cumsum([len(path) - 1 for path in paths])[:-1]
-    return [Way(path, own) for path, own in zip(paths, np.split(edges, bounds), strict=True)]
 
 
 def _look(mesh: Mesh, piece: OpenPiece, d: FloatArray, weight: FloatArray) -> _Outlook | None:

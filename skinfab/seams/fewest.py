@@ -1,7 +1,7 @@
-"""The fewest pieces, and little seam: a short slit, then dart after dart, and no more of them than the fine mesh needs.
+"""The fewest pieces, and little seam: a short slit, then dart after dart; in the end what can be spared is closed again.
 
 The darts are found on a mesh of some 1500 triangles, from a few starts. A finer mesh is bent less by each of its triangles
-and shows less d: there the last darts are found anew, and mostly fewer of them.
+and shows less d: there as much seam is closed again, or a few more darts are cut, as it takes to use the bound to the full.
 """
 
 from __future__ import annotations
@@ -19,10 +19,13 @@ from skinfab.seams.cut import OpenPiece, mesh_edges, open_pieces
 from skinfab.seams.disk import cut_to_disk, far_points
 from skinfab.seams.glue import glue_pieces
 from skinfab.seams.graph import edge_graph, shortest_tree, trace
-from skinfab.seams.growth import Grown, grow_darts, laid_apart, lay_out
+from skinfab.seams.growth import grow
 from skinfab.seams.judge import Limits, verdict_of
+from skinfab.seams.polish import exchange
 from skinfab.seams.refine import Judged, refine_seams
 from skinfab.seams.rules import EdgeRules, coarse_rules
+from skinfab.seams.sheet import Sheet, Surface, lay_apart, lay_out, sheet_of
+from skinfab.seams.straighten import straightened
 from skinfab.seams.weights import seam_weights
 
 FloatArray = NDArray[np.float64]
@@ -38,12 +41,26 @@ _MIDDLE_FACES = 8000
 #: Places of the first slit in a closed piece that are tried, far from each other.
 _STARTS = 3
 
+#: They are compared when so many times the d above 4 is left that the bound allows; the best goes on alone.
+_COMPARED = 2.0
+
+#: Seams of coarse triangles are drawn straight on fine ones within so many lengths of their edges.
+_REACH = 1.0
+
 #: The first slit is this part of the root of the area long: just enough to lay the rest out.
 _SLIT = 0.25
 
-#: A finer mesh shows less d: darts that the coarse one needed for less than so many times what the bound allows above 4 are cut
-#: there only where it needs them too.
-_COARSE_EXCESS = 1.6
+#: What covers itself is parted where that is quick: on the coarse mesh if the finer one has so many times its triangles.
+_MUCH_FINER = 2.0
+
+#: A finer mesh shows about this part of the d above 4 that a coarse one does; a much finer one, this.
+_FINER_SHOWS, _MUCH_FINER_SHOWS = 0.88, 0.75
+
+#: How often an end of a seam is tried elsewhere.
+_ROUNDS = 8
+
+#: ... and once more on a finer mesh, where keeping it from covering itself took more seam.
+_LAST_ROUNDS = 3
 
 #: In the search a flattening need not be driven to the end: d is known to 1 % of what is above 4.
 _SEARCH_DECREASE = 1e-2
@@ -60,12 +77,21 @@ class _Level:
 
 
 @dataclass(frozen=True, eq=False)
-class _Plan:
-    """What was found for one part of the coarse surface: what opens it to a disk, and its darts."""
+class _Part:
+    """What lies between locked seams, as a surface of its own.
 
-    faces: IntArray
-    opening: IntArray
-    grown: Grown
+    Parameters
+    ----------
+    piece : OpenPiece
+    surface : Surface
+        Its edges in the order of the piece's topology.
+    edges : (e,) int64
+        The mesh's.
+    """
+
+    piece: OpenPiece
+    surface: Surface
+    edges: IntArray
 
 
 def fewest_seams(
@@ -103,12 +129,30 @@ def fewest_seams(
     fine = _level(mesh, mesh, rules)
     small = fine if (few := coarsen(mesh, _COARSE_FACES)) is mesh else _level(mesh, few, rules)
     middle = fine if (some := coarsen(mesh, _MIDDLE_FACES)) is mesh else _level(mesh, some, rules)
-    plans = _plans(small, limits.mean, lambda done: report(0.5 * done))
-    cut, pieces = _grown_on(
-        middle, _carried(small, _first_darts(small, plans, limits.mean), middle), limits, lambda done: report(0.5 + 0.3 * done)
-    )
-    covered = sum(len(piece.faces) for piece, _ in pieces) == len(mesh.F)
-    if middle is not fine or not covered or not all(verdict.accepted for _, verdict in pieces):
+    much_finer = len(middle.mesh.F) > _MUCH_FINER * len(small.mesh.F)
+    shown = 1.0 if small is middle else _MUCH_FINER_SHOWS if much_finer else _FINER_SHOWS
+    last, bound = small is middle or much_finer, 4 + (limits.mean - 4) / shown
+    parts = _parts(small)
+    sheets = [
+        _searched(part.surface, bound, last=last, report=lambda done, k=k: report(0.6 * (k + done) / len(parts)))  # type: ignore[misc]
+        for k, part in enumerate(parts)
+    ]
+    if small is not middle:
+        cut = _carried(small, _cut_of(small, parts, sheets), middle)
+        parts = _parts(middle)
+        sheets = [sheet_of(part.surface, cut[part.edges] & ~part.surface.mesh.topology.is_boundary) for part in parts]
+        sheets = [None if sheet is None else lay_out(sheet) for sheet in sheets]
+    for k, sheet in enumerate(sheets):
+        report(0.6 + 0.2 * k / len(parts))
+        sheets[k] = None if sheet is None else _settled(sheet, limits)
+    cut = _cut_of(middle, parts, sheets)
+    opened = {int(piece.faces[0]): piece for piece in open_pieces(middle.mesh, cut)}
+    pieces = [
+        _judged(middle.mesh, opened[int(part.piece.faces[0])], sheet, limits)
+        for part, sheet in zip(parts, sheets, strict=True)
+        if sheet is not None
+    ]
+    if middle is not fine or len(pieces) < len(parts) or not all(verdict.accepted for _, verdict in pieces):
         forbidden = None if rules is None else rules.forbidden
         cut, pieces = refine_seams(
             mesh,
@@ -138,91 +182,85 @@ def _carried(one: _Level, cut: BoolArray, other: _Level) -> BoolArray:
         return cut
     pinned = np.unique(one.mesh.topology.E[one.locked]), np.unique(other.mesh.topology.E[other.locked])
     carried = transfer(one.mesh, cut & ~one.locked, other.mesh, weight=other.weight, pinned=pinned)
-    return without_scraps(other.mesh, (carried & ~other.forbidden) | other.locked) | other.locked
+    carried = without_scraps(other.mesh, (carried & ~other.forbidden) | other.locked) | other.locked
+    reach = _REACH * float(one.mesh.edge_lengths[cut].mean()) if cut.any() else 0.0
+    fixed = other.locked | other.mesh.topology.is_boundary
+    return straightened(other.mesh, carried, other.weight, reach=reach, fixed=fixed)
 
 
-def _plans(small: _Level, bound: float, report: Callable[[float], None]) -> list[_Plan]:
-    """For each part between the locked seams, the shortest of what is found from a few starts."""
-    mesh, plans, done = small.mesh, [], 0
-    for part in open_pieces(mesh, small.locked):
-        found: list[_Plan] = []
-        starts = _openings(small, part)
-        for k, opening in enumerate(starts):
-            report((done + k / len(starts) * len(part.faces)) / len(mesh.F))
-            cut = small.locked.copy()
-            cut[opening] = True
-            opened = open_pieces(mesh, cut, faces=part.faces)
-            if len(opened) != 1 or not opened[0].is_disk:
-                continue
-            rival = min((plan.grown for plan in found if plan.grown.mean <= bound), key=lambda grown: grown.length, default=None)
-            start = lay_out(mesh, opened[0])
-            grown = grow_darts(mesh, start, bound, small.weight, cut=cut, forbidden=small.forbidden, rival=rival)
-            if grown.mean <= bound or rival is None:
-                found.append(_Plan(part.faces, opening, grown))
-        done += len(part.faces)
-        if found:
-            plans.append(_shortest(small, found, bound))
-    return plans
+def _parts(level: _Level) -> list[_Part]:
+    mesh, parts = level.mesh, []
+    for piece in open_pieces(mesh, level.locked):
+        edges = mesh_edges(mesh, piece, np.arange(len(piece.topology.E)))
+        surface = Surface(Mesh(mesh.V[piece.vertices], piece.F, mesh.name), level.weight[edges], level.forbidden[edges])
+        parts.append(_Part(piece, surface, edges))
+    return parts
 
 
-def _shortest(small: _Level, found: list[_Plan], bound: float) -> _Plan:
-    """The plan with the least seam within the bound; it alone is laid out anew where it covers itself, which takes far longer."""
-    lengths = small.mesh.edge_lengths
-    plan = min(found, key=lambda plan: (plan.grown.mean > bound, plan.grown.length + float(lengths[plan.opening].sum())))
-    if plan.grown.good or plan.grown.mean > bound:
-        return plan
-    cut = small.locked.copy()
-    cut[plan.opening] = True
-    grown = grow_darts(small.mesh, laid_apart(small.mesh, plan.grown), bound, small.weight, cut=cut, forbidden=small.forbidden)
-    return _Plan(plan.faces, plan.opening, grown)
-
-
-def _openings(small: _Level, part: OpenPiece) -> list[IntArray]:
-    """Sets of edges each of which makes a disk of a part; for a closed one slits at points far from each other."""
-    if part.is_disk:
-        return [np.zeros(0, dtype=np.int64)]
-    topology = part.topology
-    weight = small.weight[mesh_edges(small.mesh, part, np.arange(len(topology.E)))]
-    if topology.euler != 2 or topology.is_boundary.any():
-        return [mesh_edges(small.mesh, part, cut_to_disk(topology, weight, len(part.vertices)))]
-    graph = edge_graph(topology, weight, len(part.vertices))
-    size = float(np.sqrt(small.mesh.face_areas[part.faces].sum()))
-    slits = []
-    for point in far_points(graph, _STARTS).tolist():
-        distance, before = shortest_tree(graph, np.array([point]))
-        way = mesh_edges(small.mesh, part, topology.edge_ids(trace(before, int(np.argmax(distance)))[::-1]))
-        count = int((np.cumsum(small.mesh.edge_lengths[way]) < _SLIT * size).sum())
-        slits.append(way[: max(count, 2)])  # one edge alone does not open
-    return slits
-
-
-def _first_darts(small: _Level, plans: list[_Plan], bound: float) -> BoolArray:
-    """Seams with those darts that a finer mesh is likely to need as well."""
-    cut, enough = small.locked.copy(), 4 + _COARSE_EXCESS * (bound - 4)
-    for plan in plans:
-        cut[plan.opening] = True
-        # Without gaps, as darts end on the ones before them; kept apart, d is above what it was before.
-        count = max((k + 1 for k, dart in enumerate(plan.grown.darts) if dart.mean > enough), default=0)
-        for dart in plan.grown.darts[:count]:
-            cut[dart.edges] = True
+def _cut_of(level: _Level, parts: list[_Part], sheets: list[Sheet | None]) -> BoolArray:
+    """The seams of all parts on the mesh."""
+    cut = level.locked.copy()
+    for part, sheet in zip(parts, sheets, strict=True):
+        if sheet is not None:
+            cut[part.edges[sheet.cut]] = True
     return cut
 
 
-def _grown_on(level: _Level, cut: BoolArray, limits: Limits, report: Callable[[float], None]) -> tuple[BoolArray, list[Judged]]:
-    """As many more darts on a finer mesh as it takes there, and its pieces that are disks."""
-    mesh, cut, pieces, done = level.mesh, cut.copy(), [], 0
-    for piece in open_pieces(mesh, cut):
-        report(done / len(mesh.F))
-        done += len(piece.faces)
-        if not piece.is_disk:
-            continue
-        bounds = cut.copy()
-        grown = grow_darts(mesh, lay_out(mesh, piece), limits.mean, level.weight, cut=bounds, forbidden=level.forbidden, p99=limits.p99)
-        if grown.mean <= limits.mean and not grown.good:
-            grown = grow_darts(
-                mesh, laid_apart(mesh, grown), limits.mean, level.weight, cut=bounds, forbidden=level.forbidden, p99=limits.p99
-            )
-        for dart in grown.darts:
-            cut[dart.edges] = True
-        pieces.append((grown.piece, verdict_of(mesh, grown.piece, grown.UV, limits)))
-    return cut, pieces
+def _judged(mesh: Mesh, piece: OpenPiece, sheet: Sheet, limits: Limits) -> Judged:
+    uv = np.empty((len(piece.vertices), 2))
+    uv[piece.F.ravel()] = sheet.UV[sheet.F.ravel()]
+    return piece, verdict_of(mesh, piece, uv, limits)
+
+
+def _searched(surface: Surface, bound: float, *, last: bool, report: Callable[[float], None]) -> Sheet | None:
+    """The shortest of what is found from a few starts; None where nothing opens it to a disk.
+
+    Unless it is the `last` word, it may cover itself.
+    """
+    begun: list[Sheet] = []
+    openings, compared = _openings(surface), 4 + _COMPARED * (bound - 4)
+    for k, opening in enumerate(openings):
+        report(0.7 * k / len(openings))
+        cut = np.zeros(len(surface.weight), dtype=bool)
+        cut[opening] = True
+        if (start := sheet_of(surface, cut)) is not None:
+            begun.append(grow(lay_out(start), compared, early=last) if len(openings) > 1 else lay_out(start))
+    if not begun:
+        return None
+    report(0.7)
+    now = grow(min(begun, key=lambda sheet: (sheet.mean > compared, sheet.length)), bound, early=last)
+    if last:
+        now = _apart(now, bound)
+    return exchange(now, bound, rounds=_ROUNDS) if now.mean <= bound else now
+
+
+def _settled(sheet: Sheet, limits: Limits) -> Sheet:
+    """As many more darts as it takes, and no seam more than that."""
+    now = _apart(grow(sheet, limits.mean, p99=limits.p99), limits.mean, limits.p99)
+    if not now.within(limits.mean, limits.p99):
+        return now
+    return exchange(now, limits.mean, p99=limits.p99, rounds=_LAST_ROUNDS if now.apart else 0)
+
+
+def _apart(sheet: Sheet, bound: float, p99: float = np.inf) -> Sheet:
+    """Laid out anew where it covers itself, which takes far longer, and grown on."""
+    if sheet.mean > bound or sheet.apart is not None or sheet.is_simple:
+        return sheet
+    return grow(lay_apart(sheet), bound, p99=p99)
+
+
+def _openings(surface: Surface) -> list[IntArray]:
+    """Sets of edges each of which makes a disk of a surface; for a closed one slits at points far from each other."""
+    topology, weight, n = surface.mesh.topology, surface.weight, len(surface.mesh.V)
+    if topology.euler == 1 and len(topology.boundary_loops) == 1:
+        return [np.zeros(0, dtype=np.int64)]
+    if topology.euler != 2 or topology.is_boundary.any():
+        return [cut_to_disk(topology, weight, n)]
+    graph = edge_graph(topology, weight, n)
+    slits = []
+    for point in far_points(graph, _STARTS).tolist():
+        distance, before = shortest_tree(graph, np.array([point]))
+        way = topology.edge_ids(trace(before, int(np.argmax(distance)))[::-1])
+        count = int((np.cumsum(surface.mesh.edge_lengths[way]) < _SLIT * surface.size).sum())
+        slits.append(way[: max(count, 2)])  # one edge alone does not open
+    return slits

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Protocol
 
 import numba
 import numpy as np
@@ -17,14 +18,23 @@ from numpy.typing import NDArray
 
 from skinfab.flatten._dirichlet import assemble, vertex_pattern
 from skinfab.flatten.isometric import Apart, IsometricSolver
-from skinfab.mesh.topology import Topology
 from skinfab.tolerances import NEWTON_RIDGE
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 #: A dart may end at so many places along its way: enough for the opening's shape between them, and as many columns to solve for.
-_ENDS = 8
+_ENDS = 6
+
+
+class Sides(Protocol):
+    """What a topology tells of faces and edges; edges may be those of the surface that a piece was opened from."""
+
+    @property
+    def FE(self) -> IntArray: ...
+
+    @property
+    def EF(self) -> IntArray: ...
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,7 +46,7 @@ class Way:
     vertices : (k,) int64
         Of the piece; the first on its boundary, the others inside.
     edges : (k - 1,) int64
-        Of the piece, between them.
+        Between them; of the piece, or of the surface that it was opened from.
     """
 
     vertices: IntArray
@@ -50,7 +60,7 @@ class Way:
 
 
 def releases(
-    solver: IsometricSolver, UV: FloatArray, topology: Topology, ways: Sequence[Way], *, apart: Apart | None = None
+    solver: IsometricSolver, UV: FloatArray, topology: Sides, ways: Sequence[Way], *, apart: Apart | None = None
 ) -> list[FloatArray]:
     """By how much darts along each way lower the mean d, to second order.
 
@@ -59,7 +69,7 @@ def releases(
     solver : IsometricSolver
     UV : (n, 2) float64, mm
         At its least d, or near it.
-    topology : Topology
+    topology : Sides
         Of the piece.
     ways : sequence of Way
     apart : Apart, optional
@@ -85,13 +95,13 @@ def releases(
     return found
 
 
-def held_releases(solver: IsometricSolver, UV: FloatArray, topology: Topology, ways: Sequence[Way]) -> list[FloatArray]:
+def held_releases(solver: IsometricSolver, UV: FloatArray, topology: Sides, ways: Sequence[Way]) -> list[FloatArray]:
     """As `releases`, if nothing moved but one side of the dart: less than is gained in truth, and told with no factorisation."""
     return [_decreases(stiff, force) for _, _, stiff, force in _sides(solver, UV, topology, ways)]
 
 
 def _sides(
-    solver: IsometricSolver, UV: FloatArray, topology: Topology, ways: Sequence[Way]
+    solver: IsometricSolver, UV: FloatArray, topology: Sides, ways: Sequence[Way]
 ) -> list[tuple[IntArray, FloatArray, FloatArray, FloatArray]]:
     UV = np.ascontiguousarray(UV)
     sides = []
@@ -163,6 +173,7 @@ def right_of(path: IntArray, edges: IntArray, F: IntArray, FE: IntArray, EF: Int
 
     Examples
     --------
+    >>> from skinfab.mesh.topology import Topology
     >>> fan = Topology(np.array([[4, 0, 1], [4, 1, 2], [4, 2, 3], [4, 3, 0]]))
     >>> right_of(np.array([0, 4]), fan.edge_ids(np.array([[0, 4]])), fan.F, fan.FE, fan.EF).tolist()
     [0]
@@ -177,15 +188,15 @@ def right_of(path: IntArray, edges: IntArray, F: IntArray, FE: IntArray, EF: Int
             if F[face, j] == v and F[face, (j + 1) % 3] == w:
                 face = EF[edges[k], 1]
                 break
-        while face >= 0:
+        while True:
             taken[face] = True
             j = 0
             while F[face, j] != v:
                 j += 1
             here = FE[face, j]
-            if on_path[here]:
+            if on_path[here] or EF[here, 1] < 0:
                 break
-            face = EF[here, 0] + EF[here, 1] - face  # past the boundary: -1
+            face = EF[here, 0] + EF[here, 1] - face
     return np.flatnonzero(taken)
 
 
