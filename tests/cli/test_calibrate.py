@@ -4,6 +4,7 @@ import csv
 import json
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -17,17 +18,21 @@ from skinfab.readout.logs.log import read_log, write_log
 FILES = ["calibration.json", "calibration.png", "result.json", "samples.csv"]
 
 
-@pytest.fixture
-def log(tmp_path: Path) -> Callable[..., str]:
+def writer(folder: Path) -> Callable[..., str]:
     def write(*, name: str = "log.csv", scale: float = 1.0, remark: str = "") -> str:
         time = np.arange(3200) / 100
         angle = 45 - 40 * np.cos(2 * np.pi * time / 8)
         reading = 2.5 * (1 + scale * (2e-3 * angle + 2e-5 * angle**2)) + 0.002 * np.random.default_rng(0).standard_normal(3200)
         rows = "\n".join(f"{t},{a},{u}" for t, a, u in zip(time.tolist(), angle.tolist(), reading.tolist(), strict=True))
-        (tmp_path / name).write_text(f"{remark}time,PIP,U\n{rows}\n")
-        return str(tmp_path / name)
+        (folder / name).write_text(f"{remark}time,PIP,U\n{rows}\n")
+        return str(folder / name)
 
     return write
+
+
+@pytest.fixture
+def log(tmp_path: Path) -> Callable[..., str]:
+    return writer(tmp_path)
 
 
 def test_the_names_are_the_models() -> None:
@@ -152,14 +157,25 @@ def test_a_place_that_is_none(log: Callable[..., str], tmp_path: Path, capsys: p
     assert "file" in capsys.readouterr().err
 
 
+def result_of(path: Path) -> dict[str, Any]:
+    """What a curve of degree 2 is in the JSON."""
+    words = ["calibrate", str(path), "--signal", "U", "--angle", "PIP", "--model", "poly", "--degree", "2"]
+    assert main([*words, "-o", str(path.with_name(f"of_{path.name}")), "--json"]) == 0
+    found: dict[str, Any] = json.loads((path.with_name(f"of_{path.name}") / "result.json").read_text())
+    return found
+
+
+@pytest.fixture(scope="module")
+def plain(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, Any]]:
+    """A log, and what comes of it."""
+    path = Path(writer(tmp_path_factory.mktemp("plain"))())
+    return path, result_of(path)
+
+
 @pytest.mark.parametrize("name", ["again.csv", "log.mcap", "log.bag", "bag"])
-def test_any_log_gives_the_same(log: Callable[..., str], tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str) -> None:
-    results = []
-    path = log()
+def test_any_log_gives_the_same(plain: tuple[Path, dict[str, Any]], tmp_path: Path, name: str) -> None:
+    path, expected = plain
     write_log(read_log(path).recording, tmp_path / name)
-    for each in (Path(path), tmp_path / name):
-        words = ["calibrate", str(each), "--signal", "U", "--angle", "PIP", "--model", "poly", "--degree", "2"]
-        assert main([*words, "-o", str(tmp_path / f"of_{each.name}"), "--json"]) == 0
-        results.append(json.loads(capsys.readouterr().out))
+    result = result_of(tmp_path / name)
     for key in ("n", "sse", "coefficients", "held_out_rms_deg", "notes"):
-        assert results[0][key] == results[1][key]
+        assert result[key] == expected[key]

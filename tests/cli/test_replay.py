@@ -24,13 +24,13 @@ def recording(*, simulated: bool = True) -> Recording:
     return Recording.of_values(Stream("finger", channels, 100.0, simulated), np.column_stack([reading, angle]), device_time=time)
 
 
-@pytest.fixture
-def calibration(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Path:
-    write_log(recording(), tmp_path / "log.csv")
-    words = ["calibrate", str(tmp_path / "log.csv"), "--signal", "U", "--angle", "PIP", "--model", "poly", "-o", str(tmp_path / "c")]
+@pytest.fixture(scope="module")
+def calibration(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("calibration")
+    write_log(recording(), folder / "log.csv")
+    words = ["calibrate", str(folder / "log.csv"), "--signal", "U", "--angle", "PIP", "--model", "poly", "-o", str(folder / "c")]
     assert main(words) == 0
-    capsys.readouterr()
-    return tmp_path / "c" / "calibration.json"
+    return folder / "c" / "calibration.json"
 
 
 @pytest.mark.parametrize("name", ["log.csv", "log.mcap", "log.bag", "log", "log.frames"])
