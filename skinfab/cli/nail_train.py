@@ -87,7 +87,7 @@ def run(args: argparse.Namespace) -> int:
     kept = {key: result[key] for key in ("simulated", "labels", "participants", "trials", "held_out")}
     said = {trials[k].units_said for k in rows.tolist()}
     kept["units_said"] = said == {True}
-    kept["readings"] = [kept_of(trials[k].values) for k in rows.tolist()]
+    kept["readings"] = [view for k in rows.tolist() for view in kept_of(trials[k].values)]
     kept["learned"] = _learned_from(trials, rows.tolist())
     save_nail(args.output, NailFile(model, regression, kept))
     result["file"] = str(args.output)

@@ -23,12 +23,14 @@ _SHARED = 0.1
 _FEWEST = 4
 #: So many numbers of a trial are kept in a model, the smallest: which ones these are does not depend on where a trial begins.
 KEPT = 24
+#: Of all channels, and of each kind alone: so a copy in which a channel of the other kind differs is known too.
+_VIEWS = (slice(0, 6), slice(0, 3), slice(3, 6))
 #: Odd factors by which bits are mixed (Steele, Lea and Flood 2014, splitmix64).
 _MIX = (np.uint64(0xBF58476D1CE4E5B9), np.uint64(0x94D049BB133111EB))
 
 
-def prints_of(values: FloatArray) -> IntArray:
-    """A number for each different reading (n, 6) that has any channel, ascending.
+def prints_of(values: FloatArray, view: slice = _VIEWS[0]) -> IntArray:
+    """A number for each different reading (n, 6) that has any channel of a view, ascending.
 
     Examples
     --------
@@ -37,7 +39,8 @@ def prints_of(values: FloatArray) -> IntArray:
     >>> len(np.intersect1d(prints_of(values), prints_of(saved_anew[20:]))) > 60
     True
     """
-    cells = np.where(np.isfinite(values), np.rint(values / _GRID), np.iinfo(np.int32).max)
+    values = values[:, view]
+    cells = np.where(np.isfinite(values), np.rint(values / _GRID[view]), np.iinfo(np.int32).max)
     rows = cells[np.isfinite(values).any(axis=1)].astype(np.int64).view(np.uint64)
     out = np.zeros(len(rows), dtype=np.uint64)
     for column in rows.T:
@@ -49,15 +52,16 @@ def prints_of(values: FloatArray) -> IntArray:
     return found
 
 
-def kept_of(values: FloatArray) -> list[int]:
-    """What a model keeps of a trial's readings."""
-    return [int(each) for each in prints_of(values)[:KEPT]]
+def kept_of(values: FloatArray) -> list[list[int]]:
+    """What a model keeps of a trial's readings: some numbers of each view."""
+    return [prints_of(values, view)[:KEPT].tolist() for view in _VIEWS]
 
 
 def known(values: FloatArray, kept: Sequence[Sequence[int]]) -> bool:
-    """Are these readings, or a part of them, among those that a model keeps?"""
-    own = prints_of(values)
-    return any(_alike(np.isin(np.asarray(each, dtype=np.int64), own).sum(), min(len(each), len(own))) for each in kept)
+    """Are these readings, or a part of them, among those that a model keeps, all channels of them or those of one kind?"""
+    views = [prints_of(values, view) for view in _VIEWS]
+    own, count = np.concatenate(views), max(map(len, views))
+    return any(_alike(np.isin(np.asarray(each, dtype=np.int64), own).sum(), min(len(each), count)) for each in kept)
 
 
 def shared(trials: Sequence[FloatArray]) -> dict[tuple[int, int], float]:

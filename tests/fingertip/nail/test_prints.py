@@ -14,11 +14,20 @@ def trials() -> np.ndarray:
 
 @pytest.mark.parametrize("decimals", [3, 4, 6])
 def test_a_copy_is_known_and_another_touch_is_not(trials: np.ndarray, decimals: int) -> None:
-    kept = [kept_of(each) for each in trials[:4]]
+    kept = [view for each in trials[:4] for view in kept_of(each)]
     assert {len(each) for each in kept} == {KEPT}
     saved_anew = np.round(trials, decimals)
     assert [known(each, kept) for each in saved_anew] == [True] * 4 + [False] * 4
     assert known(saved_anew[0, 100:200], kept) and not known(saved_anew[5, 100:200], kept)  # a part of it, at other times
+
+
+@pytest.mark.parametrize("put", [np.nan, 0.0, 1.25], ids=["blank", "zeros", "stuck"])
+def test_a_copy_with_a_channel_that_differs_is_known(trials: np.ndarray, put: float) -> None:
+    kept = [view for each in trials[:4] for view in kept_of(each)]
+    for channel in range(6):
+        changed = np.where(np.arange(6) == channel, put, trials)
+        assert len(np.intersect1d(prints_of(changed[0]), prints_of(trials[0]))) < 5  # of 256, where all six are looked at together
+        assert [known(each, kept) for each in changed] == [True] * 4 + [False] * 4
 
 
 def test_pairs_that_share_readings(trials: np.ndarray) -> None:
@@ -29,11 +38,11 @@ def test_pairs_that_share_readings(trials: np.ndarray) -> None:
 
 def test_a_sensor_that_hangs_makes_no_trials_alike() -> None:
     still = np.tile([0.0, 0.1, 0.9, 1.0, 2.0, 3.0], (100, 1))
-    assert len(prints_of(still)) == 1 and not known(still, [kept_of(still)]) and shared([still, still]) == {}
+    assert len(prints_of(still)) == 1 and not known(still, kept_of(still)) and shared([still, still]) == {}
 
 
 def test_missing_readings() -> None:
     values = np.random.default_rng(0).normal(size=(50, 6))
     values[:10] = np.nan
     values[10:, 2] = np.nan
-    assert len(prints_of(values)) == 40 and known(values, [kept_of(values)]) and len(prints_of(np.full((5, 6), np.nan))) == 0
+    assert len(prints_of(values)) == 40 and known(values, kept_of(values)) and len(prints_of(np.full((5, 6), np.nan))) == 0
