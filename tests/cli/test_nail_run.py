@@ -210,14 +210,18 @@ def test_a_machine_that_cannot_keep_up_is_told(model: Path, tmp_path: Path, caps
 
     class Slow(live.NailWatch):
         def step(self, frame):  # type: ignore[no-untyped-def]
-            time.sleep(0.002)  # where one frame comes every 0.7 ms
+            begun = time.thread_time()
+            while time.thread_time() < begun + 0.002:  # where one frame comes every 0.7 ms
+                pass
             return super().step(frame)
 
     frames = list(itertools.islice(nail_frames(participant(np.random.default_rng([0, 1])), [None], hold_s=0.4), 1680))
     with pytest.MonkeyPatch.context() as patched, PtyServer(nail_stream(), frames) as device:
         patched.setattr(live, "NailWatch", Slow)
         assert main(["nail", "run", str(model), "--port", str(device.path), "--seconds", "2", "-o", str(tmp_path / "o"), "--json"]) == 0
-    assert any("behind in the median" in note and "--every" in note for note in json.loads(capsys.readouterr().out)["notes"])
+    found = json.loads(capsys.readouterr().out)
+    # It is the deciding: a machine on which something else runs beside it gives less of the time to it, and says so.
+    assert any("behind in the median" in note and ("--every" in note) == (found["deciding"] > 0.5) for note in found["notes"])
 
 
 @pytest.mark.parametrize(
