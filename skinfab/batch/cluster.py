@@ -34,6 +34,9 @@ COUNTED_S = 1.0
 #: scheduler's would blame jobs that only waited beside it.
 _NEVER = 1_000_000
 
+#: Dask gives some of its loggers a level of their own.
+_LOGGERS = ("distributed", "distributed.client", "tornado", "tornado.application", "asyncio")
+
 
 @contextmanager
 def connected(*, folder: Path, scheduler: str | None, workers: int) -> Iterator[Client]:
@@ -169,7 +172,7 @@ class Slots:
 @contextmanager
 def _silent_logs() -> Iterator[None]:
     """What Dask logs of lost workers is told in our own words."""
-    loggers = [logging.getLogger(name) for name in ("distributed", "tornado", "asyncio")]
+    loggers = [logging.getLogger(name) for name in _LOGGERS]
     before = [logger.level for logger in loggers]
     for logger in loggers:
         logger.setLevel(logging.CRITICAL)

@@ -89,12 +89,15 @@ def run_batch(
             left = [job for job in jobs if job.name not in done]
             records = dict(done)
             if left:
-                with (home.folder / LINES).open("a", encoding="utf-8") as lines:
-                    for record in _do_all(left, home, min(workers, len(left)), scheduler, runner or runner_command(), progress):
-                        records[record["job"]] = record
-                        if record["status"] != "not run":
-                            lines.write(json.dumps(record) + "\n")
-                            lines.flush()
+                try:
+                    with (home.folder / LINES).open("a", encoding="utf-8") as lines:
+                        for record in _do_all(left, home, min(workers, len(left)), scheduler, runner or runner_command(), progress):
+                            records[record["job"]] = record
+                            if record["status"] != "not run":
+                                lines.write(json.dumps(record) + "\n")
+                                lines.flush()
+                finally:
+                    _sweep(home)
             if not any(record["status"] == "not run" for record in records.values()):
                 shutil.rmtree(home.under_way, ignore_errors=True)
     except OSError as fault:
@@ -111,6 +114,14 @@ def _alone(path: Path) -> Iterator[None]:
         except BlockingIOError:
             raise InputError(f"another batch is at work in {path.parent}; wait for its end, or give another -o") from None
         yield
+
+
+def _sweep(home: Home) -> None:
+    """Remove what workers that were killed have left; not what one that lost its scheduler is still at."""
+    for stage in home.under_way.glob("*-*"):
+        with suppress(BlockingIOError), (home.under_way / f"{stage.name.split('-')[0]}.lock").open("a") as file:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            shutil.rmtree(stage, ignore_errors=True)
 
 
 def _done(home: Home, jobs: Sequence[Job]) -> tuple[dict[str, dict[str, Any]], list[str]]:

@@ -24,6 +24,9 @@ from skinfab.batch.runner import Ran
 from skinfab.errors import InputError
 from skinfab.files import DISK_FULL, atomic_write, explain_os_error
 
+#: A runner that does a job ends at once when it is told to, s.
+_END_S = 1.0
+
 #: What Python, skinfab and C++ say that cannot reserve what they need.
 _SHORT = ("MemoryError", "not enough memory", "bad_alloc")
 
@@ -121,7 +124,11 @@ def _end(runner: subprocess.Popen[bytes]) -> None:
     assert runner.stdin is not None and runner.stdout is not None
     with suppress(BrokenPipeError):
         runner.stdin.close()  # at which it kills its job and ends
-    runner.wait()
+    try:
+        runner.wait(timeout=_END_S)
+    except subprocess.TimeoutExpired:
+        runner.kill()  # it is still loading what it needs, and has no job yet
+        runner.wait()
     runner.stdout.close()
 
 

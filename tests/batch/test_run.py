@@ -114,6 +114,39 @@ def test_a_killed_client_is_resumed_and_what_its_workers_still_do_is_waited_for(
     assert again.before == 5 and again.records == outcome.records
 
 
+def test_a_scheduler_that_dies_is_told_and_another_goes_on(tmp_path: Path, scheduler: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A scheduler and a worker as they are started by hand."""
+    monkeypatch.setattr(cluster, "CONNECT_S", 2.0)
+    (tmp_path / "meshes").mkdir()
+    jobs, file = quick_jobs(tmp_path / "meshes", ["make", "sleep-once"]), tmp_path / "scheduler.json"
+    dask, quiet = [str(Path(sys.executable).with_name("dask"))], {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    options = ["--scheduler-file", str(file), "--no-dashboard"]
+    served = subprocess.Popen([*dask, "scheduler", "--host", "127.0.0.1", "--port", "0", *options], **quiet)  # type: ignore[call-overload]
+    works = subprocess.Popen([*dask, "worker", "--no-nanny", "--local-directory", str(tmp_path), *options], **quiet)  # type: ignore[call-overload]
+    try:
+        wait_for(lambda: file.exists() and file.read_text().endswith("}"))
+        told: list[BaseException] = []
+
+        def work() -> None:
+            try:
+                run(jobs, tmp_path / "out", json.loads(file.read_text())["address"])
+            except InputError as fault:
+                told.append(fault)
+
+        thread = threading.Thread(target=work, daemon=True)
+        thread.start()
+        wait_for((tmp_path / "meshes/sleep-once.begun").exists)
+        served.kill()
+        thread.join(timeout=60)
+    finally:
+        for process in (served, works):
+            process.kill()
+            process.wait()
+    assert "the Dask scheduler went away; start it and run the same command again" in str(told[0])
+    outcome = run(jobs, tmp_path / "out", scheduler)
+    assert ends(outcome.records) == {"made": 2} and [r["attempts"] for r in outcome.records.values()] == [1, 2]
+
+
 def test_what_failed_for_a_limit_is_done_again_when_that_is_raised(tmp_path: Path, scheduler: str) -> None:
     mesh = tmp_path / "meshes"
     mesh.mkdir()
