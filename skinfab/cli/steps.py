@@ -105,9 +105,10 @@ def add_cut_options(p: argparse.ArgumentParser) -> None:
     p.add_argument("--complete", action="store_true", help="with --cuts: add automatic seams where those do not give good pieces")
     p.add_argument(
         "--pieces",
-        choices=("fewest", "usual"),
+        choices=("fewest", "usual", "simplest"),
         default="usual",
-        help="of automatic seams: as few pieces, with as little seam, as the bound allows, or simple ones well within it (default: usual)",
+        help="of automatic seams: as few pieces, with as little seam, as the bound allows; simple ones well within it; or compact ones "
+        "without darts (default: usual)",
     )
     p.add_argument("--max-distortion", type=bound, metavar="D", help="mean d of a piece at most (default 4.05; 4 is perfect)")
     p.add_argument("--max-p99", type=bound, metavar="D", help="d that 99 %% of a piece's area keep to (default: not asked for)")

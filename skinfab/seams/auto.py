@@ -1,6 +1,6 @@
 """Find seams by itself: few good pieces, cut on creases where there are any.
 
-Two ways are tried on a mesh of a few thousand triangles and the better one is kept: from the regions between
+For the usual pieces two ways are tried on a mesh of a few thousand triangles and the better one is kept: from the regions between
 sharp edges (exact for polyhedra and machined parts), and from the whole surface opened by one cut (best for
 organic shapes). A finer mesh then gets the seams by shortest paths, and every piece is judged anew on it.
 """
@@ -18,18 +18,19 @@ from skinfab.errors import RefusedError
 from skinfab.mesh.model import Mesh
 from skinfab.seams.coarse import coarsen, transfer
 from skinfab.seams.creases import crease_seams, without_scraps
-from skinfab.seams.cut import seam_length
+from skinfab.seams.cut import open_pieces, seam_length
 from skinfab.seams.fewest import fewest_seams
 from skinfab.seams.glue import glue_pieces
 from skinfab.seams.judge import Limits
 from skinfab.seams.refine import Judged, refine_seams
 from skinfab.seams.rules import EdgeRules, coarse_rules
+from skinfab.seams.simplest import simplest_seams
 from skinfab.seams.weights import seam_weights
 
 BoolArray = NDArray[np.bool_]
 
 #: What automatic seams are to give, see `find_seams`.
-Aim = Literal["fewest", "usual"]
+Aim = Literal["fewest", "usual", "simplest"]
 
 #: Seams are searched on about this many triangles.
 _COARSE_FACES = 6000
@@ -92,9 +93,10 @@ def find_seams(
         Pieces are not joined across less than this.
     rules : EdgeRules, optional
         Seams to keep, edges never to cut, and what others cost.
-    aim : "fewest" or "usual"
-        As few pieces and as little seam as the bound allows, with darts wherever they gain most (`fewest_seams`); or
-        simple pieces well within the bound, parted on creases where there are any.
+    aim : "fewest", "usual" or "simplest"
+        As few pieces and as little seam as the bound allows, with darts wherever they gain most (`fewest_seams`; never more
+        pieces than the usual); simple pieces well within the bound, parted on creases where there are any; or compact pieces
+        without darts (`simplest_seams`).
     progress : callable, optional
         Called with the part that is done, 0 to 1.
 
@@ -103,13 +105,28 @@ def find_seams(
     Seams
         Flattened as far as it takes to accept them; `finish.finish` drives d to its least.
     """
-    if aim == "fewest":
-        return Seams(*fewest_seams(mesh, limits, neck=neck, rules=rules, progress=progress))
-    bounds = [bound for bound in _TIGHTER if bound < limits.mean]
     report = progress or (lambda done: None)
+    parts = len(open_pieces(mesh, np.zeros(len(mesh.topology.E), dtype=bool) if rules is None else rules.locked))
+    if aim == "simplest":
+        return Seams(*simplest_seams(mesh, limits, neck=neck, rules=rules, progress=report))
+    if aim == "usual":
+        return _at_best(mesh, limits, neck, rules, parts, report)
+    found = Seams(*fewest_seams(mesh, limits, neck=neck, rules=rules, progress=report))
+    if len(found.pieces) <= parts:
+        return found
+    try:
+        other = _at_best(mesh, limits, neck, rules, parts, lambda done: report(1.0))
+    except RefusedError:  # there is an answer already
+        return found
+    return min(found, other, key=lambda seams: (len(seams.pieces), seam_length(mesh, seams.cut)))
+
+
+def _at_best(mesh: Mesh, limits: Limits, neck: float, rules: EdgeRules | None, parts: int, report: Callable[[float], None]) -> Seams:
+    """The usual pieces of the bound, or of a tighter one if those are fewer."""
+    bounds = [bound for bound in _TIGHTER if bound < limits.mean]
     found = _usual(mesh, limits, neck, rules, lambda done: report(done / (1 + len(bounds))))
     for k, bound in enumerate(bounds, start=1):
-        if len(found.pieces) <= mesh.topology.face_components()[0]:
+        if len(found.pieces) <= parts:
             break
 
         def further(done: float, k: int = k) -> None:
@@ -133,11 +150,16 @@ def _usual(mesh: Mesh, limits: Limits, neck: float, rules: EdgeRules | None, rep
     small_rules = None if rules is None or locked is None else coarse_rules(mesh, rules, small, locked)
     seams = _search(small, inner, limits, neck, small_rules, lambda done: report(0.5 * done))
     cut = _on_fine(mesh, small, seams.cut, rules, locked)
-    fine = {"tolerance": _SEARCH_DECREASE}
     weight, forbidden = (seam_weights(mesh), None) if rules is None else (rules.weights(mesh), rules.forbidden)
-    cut, pieces = refine_seams(mesh, cut, limits, weight, forbidden=forbidden, progress=lambda done: report(0.5 + 0.4 * done), **fine)
+    cut, pieces = refine_seams(
+        mesh, cut, limits, weight, forbidden=forbidden, progress=lambda done: report(0.5 + 0.4 * done), tolerance=_SEARCH_DECREASE
+    )
     stay = None if rules is None else rules.locked
-    return Seams(*glue_pieces(mesh, cut, pieces, limits, neck=neck, excess=np.inf, smaller_than=_SMALL * mesh.area, locked=stay, **fine))
+    return Seams(
+        *glue_pieces(
+            mesh, cut, pieces, limits, neck=neck, excess=np.inf, smaller_than=_SMALL * mesh.area, locked=stay, tolerance=_SEARCH_DECREASE
+        )
+    )
 
 
 def _on_fine(mesh: Mesh, small: Mesh, cut: BoolArray, rules: EdgeRules | None, locked: BoolArray | None) -> BoolArray:

@@ -34,6 +34,7 @@ def glue_pieces(
     smaller_than: float = np.inf,
     tolerance: float = NEWTON_DECREASE,
     locked: BoolArray | None = None,
+    whole: bool = False,
 ) -> tuple[BoolArray, list[Judged]]:
     """Glue neighbours, the longest border first, as long as the result keeps to `limits`.
 
@@ -54,6 +55,8 @@ def glue_pieces(
         How far each flattening is driven, see `IsometricSolver.refine`.
     locked : (e,) bool, optional
         Edges that stay cut.
+    whole : bool
+        Two pieces are joined along all they have in common or not at all, so that no seam is left inside the joined piece.
 
     Returns
     -------
@@ -72,16 +75,20 @@ def glue_pieces(
         if chain is None:
             break
         (a, b), edges = chain
+        first = int(edges.min())
+        if whole:
+            edges = _common(mesh, cut, owner, a, b)
         trial = cut.copy()
         trial[edges] = False
         faces = np.concatenate([judged[a][0].faces, judged[b][0].faces])
         if min(_area(mesh, judged[a]), _area(mesh, judged[b])) >= smaller_than:
-            refused.add((a, b, int(edges.min())))
+            refused.add((a, b, first))
             continue
         (piece,) = open_pieces(mesh, trial, faces=faces)
-        verdict = judge(mesh, piece, limits, tolerance=tolerance, untangle=False) if piece.is_disk else None
+        may = piece.is_disk and not (whole and locked is not None and locked[edges].any())
+        verdict = judge(mesh, piece, limits, tolerance=tolerance, untangle=False) if may else None
         if verdict is None or not verdict.accepted or verdict.distortion.mean > _mean(mesh, judged[a], judged[b]) + excess:
-            refused.add((a, b, int(edges.min())))
+            refused.add((a, b, first))
             continue
         cut = trial
         judged[fresh] = (piece, verdict)
@@ -89,6 +96,15 @@ def glue_pieces(
         del judged[a], judged[b]
         fresh += 1
     return cut, sorted(judged.values(), key=lambda item: int(item[0].faces[0]))
+
+
+def _common(mesh: Mesh, cut: BoolArray, owner: IntArray, a: int, b: int) -> IntArray:
+    """All edges between two pieces."""
+    EF = mesh.topology.EF
+    inner = np.flatnonzero(cut & (EF[:, 1] >= 0))
+    pair = np.sort(owner[EF[inner]], axis=1)
+    chosen: IntArray = inner[(pair == sorted((a, b))).all(axis=1)]
+    return chosen
 
 
 def _mean(mesh: Mesh, *parts: Judged) -> float:

@@ -167,7 +167,7 @@ def completed(
         All of it stays cut.
     limits : Limits
     neck : float, mm
-    aim : "fewest" or "usual"
+    aim : "fewest", "usual" or "simplest"
         See `find_seams`; the usual ones only cut further what is not good yet.
     progress : callable, optional
         Called with the part that is done, 0 to 1.

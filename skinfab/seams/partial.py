@@ -165,7 +165,7 @@ def auto_cut(
         Pieces are not joined across less than this.
     material : Material, optional
         Says whether sensors still fit.
-    aim : "fewest" or "usual"
+    aim : "fewest", "usual" or "simplest"
         See `find_seams`.
     progress : Progress, optional
 
