@@ -192,7 +192,11 @@ class App:
         body.add(self.problems, weight=0)
         self._connect(remembered)
         self.actions.tool_bar(root, self.status.tip).pack(side="top", fill="x", before=self.status)
-        submenus = {"File/open/Open recent": self.files.fill_recent, "Seams/flatten/Flatten by": self.seams.fill_methods}
+        submenus = {
+            "File/open/Open recent": self.files.fill_recent,
+            "Seams/auto_cut/Cut into": self.seams.fill_aims,
+            "Seams/flatten/Flatten by": self.seams.fill_methods,
+        }
         root.configure(menu=self.actions.menu_bar(submenus))
         apply(root, self.theme)  # menus too
         body.pack(side="top", fill="both", expand=True)

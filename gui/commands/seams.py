@@ -22,8 +22,16 @@ from gui.state.selection import Target
 from gui.state.wording import in_window
 from skinfab.flatten.methods import METHODS
 from skinfab.pieces import Piece
+from skinfab.seams.auto import Aim
 from skinfab.seams.partial import Fault, Reopened
 from skinfab.skin import Skin
+
+#: What an automatic cut can be for, and how the menu says it.
+AIMS: dict[Aim, str] = {
+    "fewest": "fewest pieces, little seam",
+    "usual": "usual pieces, well within the bound",
+    "simplest": "simplest pieces, no darts",
+}
 
 #: Seams that are known to fit their pieces; as many as there are steps to undo, and some.
 _MOST_SETTLED = 400
@@ -53,6 +61,8 @@ class SeamCommands:
         self._took_off = -1  # the step that took sensors off last
         self.method = "auto"
         self.cones: int | None = None
+        self.aim: Aim = "usual"
+        self._ticked: dict[str, tk.StringVar] = {}  # a variable that nothing holds is unset, and its tick is gone
         desk.session.listen("skin", self._follow)
 
     def actions(self) -> list[Action]:
@@ -71,11 +81,26 @@ class SeamCommands:
         self._desk.work(
             "cutting and flattening",
             tasks.auto_cut,
-            self._take(asked, "cut automatically"),
+            self._take(asked, "cut automatically" if self.aim == "usual" else f"cut into {self.aim} pieces"),
             source="flatten",
             wanted=lambda: self._fits(asked, over_sensors=True),
             skin=asked,
+            aim=self.aim,
         )
+
+    def fill_aims(self, menu: tk.Menu) -> None:
+        """One entry a kind of automatic cut; the one in use is ticked."""
+        chosen = self._ticked["aim"] = tk.StringVar(menu, value=self.aim)
+        for name, says in AIMS.items():
+            menu.add_radiobutton(label=says, value=name, variable=chosen, command=partial(self.choose_aim, name))
+
+    def choose_aim(self, aim: Aim) -> None:
+        """Cut for something else from now on, and at once."""
+        if not self._desk.settle():
+            return
+        self.aim = aim
+        if self._desk.has_skin():
+            self.auto_cut()
 
     def flatten_anew(self) -> None:
         """All pieces, by the method that is chosen."""
@@ -135,7 +160,7 @@ class SeamCommands:
 
     def fill_methods(self, menu: tk.Menu) -> None:
         """One entry a method of flattening; the one in use is ticked."""
-        chosen = tk.StringVar(menu, value=self.method)
+        chosen = self._ticked["method"] = tk.StringVar(menu, value=self.method)
         for name in ("auto", "bff-cones", *METHODS):
             menu.add_radiobutton(label=name, value=name, variable=chosen, command=partial(self.choose_method, name))
         menu.add_separator()

@@ -25,6 +25,7 @@ from skinfab.placement.edit import Sensors
 from skinfab.placement.place import place_sensors
 from skinfab.progress import Progress, part_of
 from skinfab.seams import partial
+from skinfab.seams.auto import Aim
 from skinfab.seams.partial import Fault, Reopened
 from skinfab.skin import Skin, Source
 from skinfab.tolerances import REPAIR_HOLE_EDGES
@@ -134,10 +135,10 @@ def open_skin(*, path: Path, progress: Progress) -> Opened:
     return Opened(load_skin(path), ())
 
 
-def auto_cut(*, skin: Skin, progress: Progress) -> Reopened:
-    """Automatic seams; locked ones stay."""
+def auto_cut(*, skin: Skin, aim: Aim = "usual", progress: Progress) -> Reopened:
+    """Automatic seams for an aim of `find_seams`; locked ones stay."""
     material = load_material(skin.material)
-    return partial.auto_cut(skin, limits_of(skin), neck=material.neck, material=material, progress=progress)
+    return partial.auto_cut(skin, limits_of(skin), neck=material.neck, material=material, aim=aim, progress=progress)
 
 
 def reopen(*, skin: Skin, method: str, cones: int | None, anew: Collection[str], progress: Progress) -> Reopened:

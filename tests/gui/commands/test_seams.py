@@ -36,6 +36,54 @@ def test_an_automatic_cut_lies_flat_and_is_one_step(cube):
     assert cube.skin is bare
 
 
+@pytest.fixture
+def usual(cube):
+    """The window is that of the other tests too, which cut as usual."""
+    yield cube
+    cube.app.seams.aim = "usual"
+
+
+def entries(person):
+    """The menu of what a cut is for, as it is when it is opened: labels, and which is ticked."""
+    bar = person.app.root.nametowidget(person.app.root["menu"])
+    seams = next(bar.nametowidget(bar.entrycget(k, "menu")) for k in range(bar.index("end") + 1) if bar.entrycget(k, "label") == "Seams")
+    at = next(k for k in range(seams.index("end") + 1) if seams.type(k) == "cascade" and seams.entrycget(k, "label") == "Cut into")
+    menu = seams.nametowidget(seams.entrycget(at, "menu"))
+    menu.tk.call(menu["postcommand"])
+    chosen = menu.tk.globalgetvar(menu.entrycget(0, "variable"))
+    return menu, [menu.entrycget(k, "value") for k in range(menu.index("end") + 1)], chosen
+
+
+def test_a_cut_into_fewest_usual_or_simplest_pieces_is_chosen_once_for_all(usual):
+    cube = usual
+    menu, values, chosen = entries(cube)
+    assert values == ["fewest", "usual", "simplest"] and chosen == "usual"
+    menu.invoke(2)
+    assert cube.app.runner.job.label == "cutting and flattening", "in a process of its own, which can be cancelled"
+    cube.wait()
+    assert cube.session.undo_label == "cut into simplest pieces" and len(cube.skin.pieces) == 2
+    assert entries(cube)[2] == "simplest"
+    cube.press("Control-z")
+    cube.wait()
+    assert len(cube.skin.pieces) == 0
+    cube.press("F5")  # from now on
+    cube.wait()
+    assert len(cube.skin.pieces) == 2
+    entries(cube)[0].invoke(0)
+    cube.wait()
+    assert cube.session.undo_label == "cut into fewest pieces" and len(cube.skin.pieces) == 1 and cube.problems() == []
+
+
+def test_a_cut_of_a_kind_can_be_stopped(usual):
+    entries(usual)[0].invoke(2)
+    usual.app.runner.cancel()
+    usual.wait()
+    assert usual.skin.pieces == () and len(usual.skin.seams) == 0 and usual.session.undo_label is None
+    usual.press("F5")
+    usual.wait()
+    assert len(usual.skin.pieces) == 2
+
+
 def test_a_change_during_a_running_cut_is_kept(cube):
     cube.press("F5")
     assert cube.app.runner.job is not None
