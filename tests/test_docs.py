@@ -21,6 +21,7 @@ PAGES = [
         "array.md",
         "optical.md",
         "force.md",
+        "batch.md",
     )
 ]  # patterns.md has its own test
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import fcntl
 import logging
 import math
 import secrets
@@ -13,6 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from skinfab import __version__
+from skinfab.batch.job import LOCK
 from skinfab.errors import InputError
 
 if TYPE_CHECKING:
@@ -45,7 +47,7 @@ def connected(*, folder: Path, scheduler: str | None, workers: int) -> Iterator[
     Parameters
     ----------
     folder : path
-        Of the batch; every worker must see it.
+        Of the batch, whose `LOCK` the caller holds; every worker must see both.
     scheduler : str, optional
         Address of a Dask scheduler such as ``tcp://10.0.0.5:8786``; without it workers are started here, on the loopback interface alone.
     workers : int
@@ -58,7 +60,7 @@ def connected(*, folder: Path, scheduler: str | None, workers: int) -> Iterator[
     Raises
     ------
     InputError
-        No scheduler answers, it has no workers, or they do not see `folder` or have another skinfab.
+        No scheduler answers, it has no workers, or they do not see `folder` and its lock, or have another skinfab.
     """
     import dask
 
@@ -113,23 +115,30 @@ def _require_fit(client: Client, folder: Path) -> None:
         token.write(secrets.token_bytes())
         token.flush()
         try:
-            seen = client.run(look, token.name)
+            seen = client.run(look, token.name, str(folder / LOCK))
         except Exception as fault:  # whatever the other machine raises
             raise InputError(f"the workers cannot import skinfab {__version__}: {fault}; install it there") from fault
         want = (__version__, Path(token.name).read_bytes())
-    for address, (version, content) in seen.items():
+    for address, (version, content, free) in seen.items():
         if version != want[0]:
             raise InputError(f"worker {address} has skinfab {version}, and here it is {want[0]}; install the same on both")
         if content != want[1]:
             raise InputError(f"worker {address} does not see {folder}; give a folder on a disk that all machines share, by the same path")
+        if free:
+            raise InputError(f"worker {address} is not kept out by the lock on {folder / LOCK}; mount that disk with locks (flock)")
 
 
-def look(path: str) -> tuple[str, bytes | None]:
-    """On a worker: its version of skinfab, and what it reads at a path."""
+def look(path: str, locked: str) -> tuple[str, bytes | None, bool]:
+    """On a worker: its version of skinfab, what it reads at a path, and whether it gets a lock that the client has."""
     try:
-        return __version__, Path(path).read_bytes()
+        content = Path(path).read_bytes()
+        with Path(locked).open("a") as file:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return __version__, content, False
     except OSError:
-        return __version__, None
+        return __version__, None, False
+    return __version__, content, True
 
 
 class Slots:

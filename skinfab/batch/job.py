@@ -22,6 +22,9 @@ RECORD = "job.json"
 #: What the command printed, in its folder.
 SAID = "said.txt"
 
+#: Held by the client of the batch, in its folder.
+LOCK = ".lock"
+
 #: How a job may end. All but the last are kept and not done again.
 STATUSES = ("made", "failed", "refused", "time", "memory", "crashed", "lost", "not run")
 

@@ -25,10 +25,10 @@ class Options:
     >>> options = Options()
     >>> options.value("max-distortion", "4.10")
     4.1
-    >>> options.value("pieces", "most")
+    >>> options.value("max-distortion", 3)
     Traceback (most recent call last):
         ...
-    skinfab.errors.InputError: invalid choice: 'most' (choose from 'fewest', 'usual')
+    skinfab.errors.InputError: 3 is not above 4, which is a perfect flattening
     """
 
     def __init__(self) -> None:

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 from skinfab import __version__
 from skinfab.batch.cluster import RESUMES, Slots, connected
-from skinfab.batch.job import ATTEMPTS, Home, Job
+from skinfab.batch.job import ATTEMPTS, LOCK, Home, Job
 from skinfab.batch.worker import end_jobs, runner_command, task
 from skinfab.errors import InputError
 from skinfab.files import atomic_write, explain_os_error
@@ -83,7 +83,7 @@ def run_batch(
     home = Home(Path(folder).resolve())
     try:
         home.folder.mkdir(parents=True, exist_ok=True)
-        with _alone(home.folder / ".lock"):
+        with _alone(home.folder / LOCK):
             done, notes = _done(home, jobs)
             atomic_write(home.folder / LINES, "".join(json.dumps(record) + "\n" for record in done.values()))
             left = [job for job in jobs if job.name not in done]
@@ -159,6 +159,7 @@ def _do_all(
     progress(0.0, f"starting {workers} workers" if scheduler is None else f"asking {scheduler}")
     with connected(folder=home.folder, scheduler=scheduler, workers=workers) as client:
         try:
+            progress(0.0, f"0 of {len(jobs)} jobs")
             bad = 0
             for number, record in enumerate(_Submitting(client, jobs, home, run, runner), 1):
                 bad += record["status"] != "made"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+import os
 from collections.abc import Mapping, Sequence
 from html import escape
 from pathlib import Path
@@ -102,11 +103,12 @@ def _csv(plan: Plan, outcome: Outcome) -> str:
 
 
 def _page(plan: Plan, outcome: Outcome, folder: Path) -> str:
+    named = _Names([job.mesh for job in plan.jobs])
     failed = [job for job in plan.jobs if outcome.records[job.name]["status"] != "made"]
     options = [f"--{key}" for key in plan.keys]  # a figure may have the name of a setting
     head = ["mesh", *options, "result", *(f"#{title}" for title, _ in (*_FIGURES.values(), *_USED.values()))]
-    rows = [_row(job, outcome.records[job.name], plan.keys) for job in plan.jobs]
-    why = [[_link(job, _named(job)), *_settings(job, plan.keys), escape(outcome.records[job.name]["message"])] for job in failed]
+    rows = [_row(job, named(job), outcome.records[job.name], plan.keys) for job in plan.jobs]
+    why = [[_link(job, named(job)), *_settings(job, plan.keys), escape(outcome.records[job.name]["message"])] for job in failed]
     parts = [
         "<!doctype html>",
         '<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width">',
@@ -123,11 +125,11 @@ def _page(plan: Plan, outcome: Outcome, folder: Path) -> str:
     return "\n".join(parts) + "\n"
 
 
-def _row(job: Job, record: Mapping[str, Any], keys: Sequence[str]) -> list[str]:
+def _row(job: Job, name: str, record: Mapping[str, Any], keys: Sequence[str]) -> list[str]:
     figures = record.get("figures", {})
     numbers = [form.format(figures[key]) if key in figures else "" for key, (_, form) in _FIGURES.items()]
     used = [form.format(record[key]) if key in record else "" for key, (_, form) in _USED.items()]
-    return [_link(job, _named(job), made=record["status"] == "made"), *_settings(job, keys), escape(record["status"]), *numbers, *used]
+    return [_link(job, name, made=record["status"] == "made"), *_settings(job, keys), escape(record["status"]), *numbers, *used]
 
 
 def _settings(job: Job, keys: Sequence[str]) -> list[str]:
@@ -139,8 +141,14 @@ def _short(job: Job, key: str) -> str:
     return Path(str(value)).name if key in job.files else str(value)
 
 
-def _named(job: Job) -> str:
-    return Path(job.mesh).name
+class _Names:
+    """Meshes by their paths in the folder that holds them all."""
+
+    def __init__(self, meshes: Sequence[str]) -> None:
+        self._folder = os.path.commonpath([os.path.dirname(mesh) for mesh in meshes])
+
+    def __call__(self, job: Job) -> str:
+        return os.path.relpath(job.mesh, self._folder)
 
 
 def _link(job: Job, text: str, *, made: bool = False) -> str:

@@ -17,7 +17,8 @@ import pytest
 from batches import RUNNER, quick_job, quick_jobs, wait_for
 
 from skinfab.batch import cluster
-from skinfab.batch.job import Job
+from skinfab.batch.job import STATUSES, Job
+from skinfab.batch.plan import read_plan
 from skinfab.batch.run import Outcome, run_batch
 from skinfab.errors import InputError
 
@@ -159,6 +160,19 @@ def test_what_failed_for_a_limit_is_done_again_when_that_is_raised(tmp_path: Pat
     assert fewer.notes == (f"2 results in {tmp_path / 'out/jobs'} are of other meshes or settings and were left alone",)
 
 
+def test_the_example_of_the_page_runs(tmp_path: Path, scheduler: str) -> None:
+    page = (Path(__file__).parents[2] / "docs/batch.md").read_text()
+    (tmp_path / "plan.toml").write_text(page.split("```toml\n")[1].split("```")[0])
+    (tmp_path / "objects").mkdir()
+    for name in ("objects/a.stl", "objects/b.stl", "grip.obj"):
+        (tmp_path / name).write_text(f"make {name}")
+    plan = read_plan(tmp_path / "plan.toml", output=tmp_path / "out")
+    assert f"these are {len(plan.jobs)} jobs" in page
+    outcome = run(list(plan.jobs), tmp_path / "out", scheduler)
+    assert ends(outcome.records) == {"made": 18}
+    assert all(f"`{status}`" in page for status in STATUSES)
+
+
 def test_a_full_disk_ends_the_batch(tmp_path: Path, scheduler: str) -> None:
     with pytest.raises(InputError, match="the disk is full; free some space"):
         run([quick_job(tmp_path, "full"), quick_job(tmp_path, "make")], tmp_path / "out", scheduler)
@@ -172,6 +186,9 @@ def test_a_cluster_that_will_not_do_is_told(tmp_path: Path, scheduler: str, monk
         with pytest.raises(InputError, match="no Dask scheduler answers at"):
             run(jobs, tmp_path / "out", address)
     monkeypatch.setattr(cluster, "CONNECT_S", 20.0)
+    monkeypatch.setattr(cluster, "LOCK", ".another")  # not held by anybody
+    with pytest.raises(InputError, match=r"is not kept out by the lock on .*\.another"):
+        run(jobs, tmp_path / "out", scheduler)
     monkeypatch.setattr(cluster, "__version__", "0.0.0")
     with pytest.raises(InputError, match=r"has skinfab .*, and here it is 0\.0\.0"):
         run(jobs, tmp_path / "out", scheduler)

@@ -14,7 +14,8 @@ from skinfab.batch.table import write_tables
 
 
 def test_counts_rows_and_links(tmp_path: Path) -> None:
-    made, bad = quick_job(tmp_path, "a"), quick_job(tmp_path, "<b>")
+    (tmp_path / "in").mkdir()
+    made, bad = quick_job(tmp_path, "a"), quick_job(tmp_path / "in", "<b>")
     made = Job(made.name, made.mesh, {"pieces": "fewest", "sensors": "/far/one.toml"}, ("sensors",))
     figures = {"n_faces": 1234, "n_pieces": 2, "d_mean": 4.01234, "seam_mm": 12.6}
     records = {
@@ -38,5 +39,6 @@ def test_counts_rows_and_links(tmp_path: Path) -> None:
     page = (tmp_path / "batch.html").read_text()
     assert re.findall(r'href="([^"]*)"', page) == [f"jobs/{bad.name}/", f"jobs/{made.name}/report.html", f"jobs/{bad.name}/"]
     assert "no &lt;faces&gt;" in page and "<b>" not in page and "4.0123" in page and "1,234" in page and ">one.toml<" in page
+    assert ">a.obj</a>" in page and ">in/&lt;b&gt;.obj</a>" in page
     assert "2 jobs (1 of them done before): 1 made, 1 whose input cannot be used" in page
     assert "<script" not in page and "http" not in page
