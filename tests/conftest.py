@@ -1,7 +1,9 @@
 """Lets every test import the shared shapes (`import shapes`), and what tests start be interrupted; pictures are made small."""
 
+import contextlib
 import fcntl
 import gc
+import io
 import os
 import shutil
 import signal
@@ -45,6 +47,23 @@ def cut_once(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str, Path], 
         return Path(shutil.copy(document, to))
 
     return copied
+
+
+@pytest.fixture(scope="session")
+def first_skin(tmp_path_factory: pytest.TempPathFactory, small_previews: None) -> tuple[Path, str]:
+    """What `skinfab make meshes/robot_finger.obj -o first` writes, only to be read, and says. Made once for all tests and workers."""
+    folder = tmp_path_factory.getbasetemp()
+    if "PYTEST_XDIST_WORKER" in os.environ:
+        folder = folder.parent  # all workers'
+    made, text = folder / "first", folder / "first.txt"
+    with (folder / "first.lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if not text.exists():
+            said = io.StringIO()
+            with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
+                assert main(["make", str(Path(__file__).parents[1] / "meshes/robot_finger.obj"), "-o", str(made)]) == 0
+            text.write_text(said.getvalue().replace(f"{folder}/", ""))
+    return made, text.read_text()
 
 
 @pytest.fixture(scope="session", autouse=True)
