@@ -223,8 +223,10 @@ def _searched(surface: Surface, bound: float, *, last: bool, report: Callable[[f
         report(0.7 * k / len(openings))
         cut = np.zeros(len(surface.weight), dtype=bool)
         cut[opening] = True
-        if (start := sheet_of(surface, cut)) is not None:
-            begun.append(grow(lay_out(start), compared, early=last) if len(openings) > 1 else lay_out(start))
+        if (start := sheet_of(surface, cut)) is None:
+            continue
+        shortest = min((sheet.length for sheet in begun if sheet.mean <= compared), default=np.inf)
+        begun.append(grow(lay_out(start), compared, early=False, shorter_than=shortest) if len(openings) > 1 else lay_out(start))
     if not begun:
         return None
     report(0.7)

@@ -69,21 +69,25 @@ def grow(
     now, darts = start, 0
     while not now.within(bound, p99) and darts < _MOST_DARTS:
         # Hot spots have no say in the mean: once it keeps to its bound, the dart that gains most of what is above 4.
-        way = best_dart(now, bound if now.mean > bound else 4.0, power=power)
-        if way is None or now.length + now.surface.lengths[way.edges].sum() >= shorter_than:
+        opened = None
+        ways = best_darts(now, bound if now.mean > bound else 4.0, power=power)
+        if ways and now.length + now.surface.lengths[ways[0].edges].sum() >= shorter_than:
             break
-        opened = with_dart(now, way)
-        if opened is None:  # the boundary touches itself there
+        for way in ways:
+            opened = with_dart(now, way)
+            if opened is None:
+                continue
+            if early and now.apart is None and now.mean - 4 < _NEAR * (bound - 4) and now.is_simple and not opened.is_simple:
+                opened = with_dart(replace(now, apart=keep_apart(now)), way) or opened
             break
-        if early and now.apart is None and now.mean - 4 < _NEAR * (bound - 4) and now.is_simple and not opened.is_simple:
-            opened = with_dart(replace(now, apart=keep_apart(now)), way)
-            assert opened is not None  # as it is one disk
+        if opened is None:
+            break
         now, darts = opened, darts + 1
     return now
 
 
-def best_dart(now: Sheet, bound: float, *, power: float = LENGTH_POWER) -> Way | None:
-    """From the boundary to the tip, or None where no dart gains anything."""
+def best_darts(now: Sheet, bound: float, *, power: float = LENGTH_POWER) -> list[Way]:
+    """The few best darts from the boundary to their tips, the best first; none where no dart gains anything."""
     size = now.surface.size
     wanted = _WANTED * (now.mean - bound)
     for times in (1, _MORE):
@@ -97,11 +101,15 @@ def best_dart(now: Sheet, bound: float, *, power: float = LENGTH_POWER) -> Way |
         if not ways:
             continue
         values = worth(releases(now.solver, now.UV, now, ways, apart=now.apart), ways)
-        best = int(np.argmax([value.max() for value in values]))
-        if values[best].max() > 0:
-            end = int(ways[best].ends[int(np.argmax(values[best]))])
-            return Way(ways[best].vertices[: end + 1], ways[best].edges[:end])
-    return None
+        best = [k for k in np.argsort([-value.max() for value in values], kind="stable") if values[k].max() > 0]
+        if best:
+            return [_up_to(ways[k], int(np.argmax(values[k]))) for k in best]
+    return []
+
+
+def _up_to(way: Way, end: int) -> Way:
+    edges = int(way.ends[end])
+    return Way(way.vertices[: edges + 1], way.edges[:edges])
 
 
 def _worth(now: Sheet, way: Way, gains: FloatArray, wanted: float, power: float) -> FloatArray:
@@ -115,7 +123,7 @@ def _worth(now: Sheet, way: Way, gains: FloatArray, wanted: float, power: float)
 
 
 def with_dart(now: Sheet, way: Way) -> Sheet | None:
-    """With a dart cut along `way`, laid out from where it was; None where that is no longer one disk."""
+    """With a dart cut along `way`, laid out from where it was; None where that is no longer one disk, or of no use."""
     cut = now.cut.copy()
     cut[way.edges] = True
     opened = sheet_of(now.surface, cut)
@@ -126,7 +134,10 @@ def with_dart(now: Sheet, way: Way) -> Sheet | None:
         return refined(opened, uv)
     opened = replace(opened, apart=keep_apart(opened))
     parted = _parted(opened, uv, now, way)
-    return lay_apart(opened) if parted is None else refined(opened, parted)
+    if parted is not None:
+        return refined(opened, parted)
+    anew = lay_apart(opened, hopeless_above=now.mean)
+    return anew if anew.mean < now.mean else None
 
 
 def _parted(opened: Sheet, uv: FloatArray, now: Sheet, way: Way) -> FloatArray | None:

@@ -173,9 +173,9 @@ def lay_out(sheet: Sheet) -> Sheet:
     return _laid(replace(sheet, apart=None), uv)
 
 
-def lay_apart(sheet: Sheet) -> Sheet:
-    """At its least d without covering itself."""
-    uv = flatten_bijective(sheet.surface.mesh.V[sheet.origin], sheet.F, tolerance=DECREASE)
+def lay_apart(sheet: Sheet, *, hopeless_above: float = np.inf) -> Sheet:
+    """At its least d without covering itself; only begun where that is far above `hopeless_above`."""
+    uv = flatten_bijective(sheet.surface.mesh.V[sheet.origin], sheet.F, tolerance=DECREASE, hopeless_above=hopeless_above)
     return _laid(replace(sheet, apart=keep_apart(sheet)), uv)
 
 
