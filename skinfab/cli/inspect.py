@@ -11,6 +11,7 @@ from skinfab.cli import steps
 if TYPE_CHECKING:
     from skinfab.mesh.inspect import Inspection
     from skinfab.mesh.io import Loaded
+    from skinfab.seams.expect import Expected
 
 
 _COUNTS = (
@@ -34,32 +35,38 @@ def run(args: argparse.Namespace) -> int:
     from skinfab.mesh.inspect import inspect
     from skinfab.mesh.io import load_mesh
     from skinfab.mesh.repair import clean, repair, require_usable
+    from skinfab.seams.expect import expected_pieces
 
     loaded = load_mesh(args.mesh, units=args.units, scale=args.scale)
     found = inspect(loaded.mesh.V, loaded.mesh.F)
     cleaned, done = clean(loaded.mesh)
     after = inspect(cleaned.V, cleaned.F) if done else found
     would_do = repair(cleaned)[1] if after.open_edges or not after.usable else []
+    expected = expected_pieces(cleaned) if after.usable and after.faces else None
     if args.json:
-        _print_json(loaded, found, after, done, would_do)
+        _print_json(loaded, found, after, done, would_do, expected)
     else:
-        _print_table(loaded, found, after, done, would_do)
+        _print_table(loaded, found, after, done, would_do, expected)
     require_usable(cleaned)
     return 0
 
 
-def _print_json(loaded: Loaded, found: Inspection, after: Inspection, done: list[str], would_do: list[str]) -> None:
+def _print_json(
+    loaded: Loaded, found: Inspection, after: Inspection, done: list[str], would_do: list[str], expected: Expected | None
+) -> None:
     import json
     from dataclasses import asdict
 
     report = {"file": loaded.file, "sha256": loaded.sha256, "units": loaded.units, "scale": loaded.scale, "notes": list(loaded.notes)}
     report |= asdict(found) | {"closed": found.closed, "usable": after.usable}
     report["after_cleaning"] = asdict(after) | {"closed": after.closed}
-    report |= {"cleaning_does": done, "repair_would_do": would_do}
+    report |= {"cleaning_does": done, "repair_would_do": would_do, "expected": None if expected is None else asdict(expected)}
     print(json.dumps(report))
 
 
-def _print_table(loaded: Loaded, found: Inspection, after: Inspection, done: list[str], would_do: list[str]) -> None:
+def _print_table(
+    loaded: Loaded, found: Inspection, after: Inspection, done: list[str], would_do: list[str], expected: Expected | None
+) -> None:
     from rich.console import Console
     from rich.table import Table
     from rich.text import Text
@@ -78,9 +85,18 @@ def _print_table(loaded: Loaded, found: Inspection, after: Inspection, done: lis
         ("Found", [fault.sentence for fault in found.faults]),
         ("Cleaning (always done)", done),
         ("With --repair", would_do),
+        ("Expect", [] if expected is None else [_expectation(expected)]),
     ):
         for line in lines:
             console.print(Text(f"{heading}: {line}"), soft_wrap=True)
+
+
+def _expectation(expected: Expected) -> str:
+    least, few = steps.counted(expected.pieces, "piece"), steps.counted(expected.components, "piece")
+    return (
+        f"at least {least} without darts at a mean d of 4.05, about {expected.compact} where they are compact (estimates, by "
+        f"{expected.curvature_sr:.1f} sr of smooth curvature; machined parts need more); with darts, {few} may do"
+    )
 
 
 def _shown(value: object, digits: int | None = None) -> str:
