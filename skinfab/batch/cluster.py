@@ -26,8 +26,10 @@ CONNECT_S = 20.0
 #: So long a cluster may be without a worker, s: one that is started through a queue takes its time.
 WORKERS_S = 120.0
 
-#: What is said wherever a batch breaks off.
-RESUMES = "what is done is kept and not done again"
+_RESUMES = "run the same command again: what is done is kept and not done again"
+
+#: What is said where the scheduler does not answer any more.
+GONE = f"the Dask scheduler went away; start it and {_RESUMES}"
 
 #: How often the number of workers is asked for, s.
 COUNTED_S = 1.0
@@ -170,11 +172,11 @@ class Slots:
         except (OSError, TimeoutError):
             self._number = -1
         if self._number < 0:
-            raise InputError(f"the Dask scheduler went away; start it and run the same command again: {RESUMES}")
+            raise InputError(GONE)
         self._asked = now
         self._seen = now if self._number or self._seen < 0 else self._seen
         if now - self._seen > WORKERS_S:
-            raise InputError(f"there has been no worker for {WORKERS_S:g} s; start some and run the same command again: {RESUMES}")
+            raise InputError(f"there has been no worker for {WORKERS_S:g} s; start some and {_RESUMES}")
         return self._number
 
 

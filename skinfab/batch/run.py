@@ -9,13 +9,14 @@ import secrets
 import shutil
 from collections import deque
 from collections.abc import Iterator, Mapping, Sequence
+from concurrent.futures import CancelledError
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from skinfab import __version__
-from skinfab.batch.cluster import RESUMES, Slots, connected
+from skinfab.batch.cluster import GONE, Slots, connected
 from skinfab.batch.job import ATTEMPTS, LOCK, Home, Job
 from skinfab.batch.worker import end_jobs, runner_command, task
 from skinfab.errors import InputError
@@ -208,12 +209,15 @@ class _Submitting:
         """None where the job was put back."""
         from distributed import KilledWorker
 
-        if future.status == "finished":
-            found: dict[str, Any] = future.result()
-            return found
-        if future.status != "error":
-            raise InputError(f"the Dask scheduler went away; start it and run the same command again: {RESUMES}")
-        fault = future.exception()
+        fault: BaseException | None = None
+        with suppress(OSError, TimeoutError, CancelledError):  # it died while it was asked
+            if future.status == "finished":
+                found: dict[str, Any] = future.result()
+                return found
+            if future.status == "error":
+                fault = future.exception()
+        if fault is None:
+            raise InputError(GONE)
         if isinstance(fault, InputError):
             raise fault  # of the folder: no other job could be done either
         if isinstance(fault, KilledWorker) and times < ATTEMPTS:

@@ -108,7 +108,7 @@ def test_a_killed_client_is_resumed_and_what_its_workers_still_do_is_waited_for(
     before = sum((out / "jobs" / job.name / "job.json").exists() for job in jobs)
     (out / "jobs.jsonl").write_text((out / "jobs.jsonl").read_text() + '{"job": "torn')
     outcome = run(jobs, out, scheduler)
-    assert ends(outcome.records) == {"made": 4, "failed": 1} and outcome.before == before
+    assert ends(outcome.records) == {"made": 4, "failed": 1} and before <= outcome.before < 5  # another may have ended since
     assert [r["attempts"] for r in outcome.records.values()] == [1] * 5  # the sleeper too was done once, by the worker of the first run
     assert len((out / "jobs.jsonl").read_text().splitlines()) == 5
     again = run(jobs, out, "tcp://127.0.0.1:1")  # nothing is left to do, so nobody is asked
@@ -137,6 +137,7 @@ def test_a_scheduler_that_dies_is_told_and_another_goes_on(tmp_path: Path, sched
         thread = threading.Thread(target=work, daemon=True)
         thread.start()
         wait_for((tmp_path / "meshes/sleep-once.begun").exists)
+        wait_for((tmp_path / "out/jobs" / jobs[0].name).exists)
         served.kill()
         thread.join(timeout=60)
     finally:
