@@ -1,6 +1,11 @@
 """`skinfab segment`: automatic seams and seams by hand."""
 
+import contextlib
 import json
+import os
+import signal
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -166,3 +171,47 @@ def test_marks_that_forbid_everything_are_refused(tmp_path: Path, capsys: pytest
     save_skin(forbid(skin, np.arange(len(skin.mesh.topology.E))), tmp_path / "a.skin")
     assert main(["segment", str(tmp_path / "a.skin"), "-o", str(tmp_path / "b.skin")]) == 3
     assert "the forbidden edges leave no seam" in capsys.readouterr().err and not (tmp_path / "b.skin").exists()
+
+
+def test_simplest_pieces(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["segment", CUBE, "-o", str(tmp_path / "cube.skin"), "--pieces", "simplest", "--json"]) == 0
+    said = json.loads(capsys.readouterr().out)
+    assert len(said["pieces"]) == 2 and said["seam_mm"] == pytest.approx(8 * 40)
+
+
+def test_a_piece_whose_halves_hang_on_a_thread_is_parted(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Two flat squares of 20 mm with a bridge of 2 mm between them; the material asks for 4."""
+    x, y = np.array([0, 20, 20, 20, 20, 30, 30, 30, 30, 50, 0, 50.0]), np.array([0, 0, 9, 11, 20, 0, 9, 11, 20, 0, 20, 20.0])
+    faces = [(0, 1, 2), (0, 2, 3), (0, 3, 10), (10, 3, 4), (2, 6, 3), (3, 6, 7), (5, 9, 6), (6, 9, 11), (6, 11, 7), (7, 11, 8)]
+    lines = [f"v {a} {b} 0" for a, b in zip(x, y, strict=True)] + [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in faces]
+    (tmp_path / "h.obj").write_text("\n".join(lines) + "\n")
+    (tmp_path / "cuts.txt").write_text("0 1\n")  # along the border: nothing is cut
+    words = ["segment", str(tmp_path / "h.obj"), "-o", str(tmp_path / "h.skin"), "--json"]
+    assert main([*words, "--cuts", str(tmp_path / "cuts.txt")]) == 3
+    assert "piece 1 (10 faces) has a neck 2.0 mm wide when laid flat, and 4 mm of silicone survive" in capsys.readouterr().err
+    assert main(words) == 0
+    said = json.loads(capsys.readouterr().out)
+    assert len(said["pieces"]) == 2 and said["seam_mm"] == pytest.approx(2, abs=0.3)
+
+
+@pytest.mark.skipif(not hasattr(os, "openpty"), reason="no pseudo-terminals on this system")
+def test_fewest_pieces_show_how_far_they_are_and_can_be_interrupted(tmp_path: Path) -> None:
+    ours, theirs = os.openpty()
+    target = tmp_path / "grip.skin"
+    work = subprocess.Popen(
+        [sys.executable, "-m", "skinfab", "segment", str(ROOT / "meshes" / "grip.obj"), "-o", str(target), "--pieces", "fewest"],
+        stderr=theirs,
+        env={**os.environ, "TERM": "xterm", "COLUMNS": "100"},
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
+    )
+    os.close(theirs)
+    shown = b""
+    while b"cutting and flattening" not in shown:
+        shown += os.read(ours, 4096)
+    work.send_signal(signal.SIGINT)
+    with contextlib.suppress(OSError):  # Linux says EIO where the other side is closed
+        while more := os.read(ours, 4096):
+            shown += more
+    os.close(ours)
+    assert work.wait(timeout=60) == 130 and b"interrupted; nothing half-written was left" in shown
+    assert list(tmp_path.iterdir()) == []
