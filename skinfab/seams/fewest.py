@@ -127,8 +127,8 @@ def fewest_seams(
     """
     report = progress or (lambda done: None)
     fine = _level(mesh, mesh, rules)
-    small = fine if (few := coarsen(mesh, _COARSE_FACES)) is mesh else _level(mesh, few, rules)
     middle = fine if (some := coarsen(mesh, _MIDDLE_FACES)) is mesh else _level(mesh, some, rules)
+    small = middle if (few := coarsen(some, _COARSE_FACES)) is some else _level(mesh, few, rules)
     much_finer = len(middle.mesh.F) > _MUCH_FINER * len(small.mesh.F)
     shown = 1.0 if small is middle else _MUCH_FINER_SHOWS if much_finer else _FINER_SHOWS
     last, bound = small is middle or much_finer, 4 + (limits.mean - 4) / shown

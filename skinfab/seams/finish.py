@@ -11,6 +11,9 @@ from skinfab.seams.auto import Seams
 from skinfab.seams.judge import Limits, verdict_of
 from skinfab.seams.refine import Judged
 
+#: Sides in contact creep past each other in hundreds of steps, for next to nothing.
+_APART_STEPS = 12
+
 
 def finish(mesh: Mesh, seams: Seams, limits: Limits) -> Seams:
     """The same pieces, each at its least d.
@@ -39,7 +42,7 @@ def _finish(mesh: Mesh, item: Judged, limits: Limits) -> Judged:
     # A little overlap is accepted, but none is better where the bound leaves room for it.
     clear = before.distortion.overlap_mm2 == 0
     if clear:
-        uv = solver.refine(before.UV, apart=keep_apart(V, piece.topology)).UV
+        uv = solver.refine(before.UV, apart=keep_apart(V, piece.topology), max_steps=_APART_STEPS).UV
     else:
         uv = flatten_bijective(V, piece.F, topology=piece.topology, hopeless_above=limits.mean)
     apart = verdict_of(mesh, piece, uv, limits)
