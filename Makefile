@@ -1,5 +1,5 @@
 # Two commands do everything, their own set-up included: `make demo` and `make test`.
-.PHONY: demo test collected setup lint peers lock pictures
+.PHONY: demo test collected setup lint peers lock pictures package audit
 
 PYTHON = .venv/bin/python
 COMPILING = tests/test_docs.py tests/fingertip/array/test_contours.py tests/fingertip/array/test_layer.py
@@ -37,6 +37,16 @@ setup:
 
 lock:
 	$(PYTHON) tools/lock.py
+	$(PYTHON) tools/licences.py
+
+# Source distribution and wheel into dist/, and the wheel tried outside the source tree.
+package: setup
+	$(PYTHON) tools/package.py
+
+# Known weaknesses of the locked packages, asked of PyPI: pip-audit in an environment of its own. It fails, too, where PyPI cannot be asked.
+audit: setup
+	@test -x .venv-audit/bin/pip-audit || { $(PYTHON) -m venv .venv-audit && .venv-audit/bin/python -m pip install --quiet --only-binary :all: pip-audit; }
+	.venv-audit/bin/pip-audit --strict --disable-pip --no-deps -r requirements.lock
 
 pictures: demo
 	@mkdir -p docs/pictures
