@@ -6,7 +6,7 @@ import difflib
 import itertools
 import re
 import tomllib
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NoReturn
@@ -32,13 +32,16 @@ class Plan:
         Each once, in the order of the file: mesh after mesh, the last setting fastest.
     keys : tuple of str
         The settings that the file names.
+    given : dict of str to dict
+        The settings of each job by its name, also those that are the default.
     notes : tuple of str
         What the user should know.
     """
 
     jobs: tuple[Job, ...]
     keys: tuple[str, ...]
-    notes: tuple[str, ...]
+    given: Mapping[str, Mapping[str, Value]]
+    notes: tuple[str, ...] = ()
 
 
 def read_plan(path: str | Path, *, output: str | Path) -> Plan:
@@ -105,19 +108,26 @@ class _Reader:
                 f"{self._path}: {len(meshes)} meshes and these settings make {number:,} jobs, more than {MOST_JOBS:,}; part the file"
             )
         self._require_fitting(meshes, settings)
+        return self._product(meshes, settings, limits)
+
+    def _product(self, meshes: Sequence[Path], settings: dict[str, list[Value]], limits: dict[str, float]) -> Plan:
         jobs: dict[str, Job] = {}
+        given: dict[str, dict[str, Value]] = {}
         same: list[str] = []
         digests: dict[str, str] = {}
-        files = tuple(key for key, values in settings.items() if any(self._options.is_file(key, value) for value in values))
         for mesh in meshes:
             for values in itertools.product(*settings.values()):
-                chosen = {k: v for k, v in zip(settings, values, strict=True) if not self._options.is_default(k, v)}
-                read = tuple(key for key in files if key in chosen and self._options.is_file(key, chosen[key]))
-                job = Job(name_of(mesh, chosen, read, digests=digests), str(mesh), chosen, read, **limits)
-                if jobs.setdefault(job.name, job) is not job:
+                every = dict(zip(settings, values, strict=True))
+                chosen = {key: value for key, value in every.items() if not self._options.is_default(key, value)}
+                files = tuple(key for key, value in chosen.items() if self._options.is_file(key, value))
+                job = Job(name_of(mesh, chosen, files, digests=digests), str(mesh), chosen, files, **limits)
+                if jobs.setdefault(job.name, job) is job:
+                    given[job.name] = every
+                else:
                     same.append(f"{mesh.name} is the same as {Path(jobs[job.name].mesh).name}")
-        notes = [f"{len(same)} of {number} jobs are asked for twice ({same[0]}) and done once"] if same else []
-        return Plan(tuple(jobs.values()), tuple(settings), tuple(notes))
+        asked = len(jobs) + len(same)
+        notes = (f"{len(same)} of {asked} jobs are asked for twice ({same[0]}) and done once",) if same else ()
+        return Plan(tuple(jobs.values()), tuple(settings), given, notes)
 
     def _meshes(self, data: dict[str, Any]) -> list[Path]:
         if "meshes" not in data:

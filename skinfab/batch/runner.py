@@ -105,7 +105,8 @@ def run_apart(
     leash : int, optional
         A file descriptor; when it becomes readable (its other end is gone), the job and this process end.
     """
-    reserved = None if memory_mb is None else _status_bytes(os.getpid(), "VmSize:") + int(memory_mb * 1e6)
+    loaded = _status_bytes(os.getpid(), "VmSize:")
+    reserved = loaded + int(memory_mb * 1e6) if loaded and memory_mb is not None else None
     began = time.monotonic()
     mine = os.getpid()
     pid = os.fork()

@@ -70,7 +70,10 @@ def summary(outcome: Outcome) -> str:
 
 def as_object(plan: Plan, outcome: Outcome) -> dict[str, Any]:
     """For scripts: counts, and of each job its record and where its result lies, in the order of the plan."""
-    jobs = [{**outcome.records[job.name], "mesh": job.mesh, "folder": f"jobs/{job.name}"} for job in plan.jobs]
+    jobs = [
+        {**outcome.records[job.name], "mesh": job.mesh, "settings": dict(plan.given[job.name]), "folder": f"jobs/{job.name}"}
+        for job in plan.jobs
+    ]
     return {"schema": 1, "counts": counts(outcome), "done_before": outcome.before, "jobs": jobs, "notes": [*plan.notes, *outcome.notes]}
 
 
@@ -96,7 +99,7 @@ def _csv(plan: Plan, outcome: Outcome) -> str:
     for job in plan.jobs:
         record = outcome.records[job.name]
         figures = record.get("figures", {})
-        settings = [job.settings.get(key, "") for key in plan.keys]
+        settings = [plan.given[job.name][key] for key in plan.keys]
         cells = [*(figures.get(key, "") for key in _FIGURES), *(record.get(key, "") for key in (*_USED, "attempts"))]
         writer.writerow([job.name, job.mesh, *settings, record["status"], *cells, record["message"]])
     return text.getvalue()
@@ -107,8 +110,8 @@ def _page(plan: Plan, outcome: Outcome, folder: Path) -> str:
     failed = [job for job in plan.jobs if outcome.records[job.name]["status"] != "made"]
     options = [f"--{key}" for key in plan.keys]  # a figure may have the name of a setting
     head = ["mesh", *options, "result", *(f"#{title}" for title, _ in (*_FIGURES.values(), *_USED.values()))]
-    rows = [_row(job, named(job), outcome.records[job.name], plan.keys) for job in plan.jobs]
-    why = [[_link(job, named(job)), *_settings(job, plan.keys), escape(outcome.records[job.name]["message"])] for job in failed]
+    rows = [_row(job, named(job), outcome.records[job.name], _settings(job, plan)) for job in plan.jobs]
+    why = [[_link(job, named(job)), *_settings(job, plan), escape(outcome.records[job.name]["message"])] for job in failed]
     parts = [
         "<!doctype html>",
         '<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width">',
@@ -119,26 +122,23 @@ def _page(plan: Plan, outcome: Outcome, folder: Path) -> str:
         *(["<h2>Without a result</h2>", _table(["mesh", *options, "why"], why)] if why else []),
         "<h2>All jobs</h2>",
         _table(head, rows),
-        "<p>An empty setting is the default. d is the distortion: 4 is perfect.</p>",
+        "<p>d is the distortion: 4 is perfect.</p>",
         "</body></html>",
     ]
     return "\n".join(parts) + "\n"
 
 
-def _row(job: Job, name: str, record: Mapping[str, Any], keys: Sequence[str]) -> list[str]:
+def _row(job: Job, name: str, record: Mapping[str, Any], settings: Sequence[str]) -> list[str]:
     figures = record.get("figures", {})
     numbers = [form.format(figures[key]) if key in figures else "" for key, (_, form) in _FIGURES.items()]
     used = [form.format(record[key]) if key in record else "" for key, (_, form) in _USED.items()]
-    return [_link(job, name, made=record["status"] == "made"), *_settings(job, keys), escape(record["status"]), *numbers, *used]
+    return [_link(job, name, made=record["status"] == "made"), *settings, escape(record["status"]), *numbers, *used]
 
 
-def _settings(job: Job, keys: Sequence[str]) -> list[str]:
-    return [escape(_short(job, key)) for key in keys]
-
-
-def _short(job: Job, key: str) -> str:
-    value = job.settings.get(key, "")
-    return Path(str(value)).name if key in job.files else str(value)
+def _settings(job: Job, plan: Plan) -> list[str]:
+    """Cells; of a file its name."""
+    given = {key: str(plan.given[job.name][key]) for key in plan.keys}
+    return [escape(Path(value).name if key in job.files else value) for key, value in given.items()]
 
 
 class _Names:

@@ -44,9 +44,9 @@ def run(args: argparse.Namespace) -> int:
     plan = read_plan(args.plan, output=args.output)
     require_apart(args.output, [], [args.plan, *{job.mesh for job in plan.jobs}], perhaps=[CSV, PAGE, OBJECT])
     steps.say(plan.notes)
-    workers = args.workers or len(os.sched_getaffinity(0))
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     with terminal_progress(quiet=args.json) as progress:
-        outcome = run_batch(plan.jobs, args.output, workers=workers, scheduler=args.scheduler, progress=progress)
+        outcome = run_batch(plan.jobs, args.output, workers=args.workers or cores, scheduler=args.scheduler, progress=progress)
     found = write_tables(plan, outcome, args.output)
     steps.say(outcome.notes)
     if args.json:

@@ -16,13 +16,14 @@ from skinfab.batch.table import write_tables
 def test_counts_rows_and_links(tmp_path: Path) -> None:
     (tmp_path / "in").mkdir()
     made, bad = quick_job(tmp_path, "a"), quick_job(tmp_path / "in", "<b>")
-    made = Job(made.name, made.mesh, {"pieces": "fewest", "sensors": "/far/one.toml"}, ("sensors",))
+    given = {"pieces": "fewest", "sensors": "/far/one.toml"}
+    made = Job(made.name, made.mesh, given, ("sensors",))
     figures = {"n_faces": 1234, "n_pieces": 2, "d_mean": 4.01234, "seam_mm": 12.6}
     records = {
         made.name: {"job": made.name, "status": "made", "message": "", "figures": figures, "wall_s": 1.25, "attempts": 2},
         bad.name: {"job": bad.name, "status": "failed", "message": "no <faces>", "wall_s": 0.1, "attempts": 1},
     }
-    plan = Plan((made, bad), ("pieces", "sensors"), ("one is the same",))
+    plan = Plan((made, bad), ("pieces", "sensors"), {made.name: given, bad.name: {**given, "pieces": "usual"}}, ("one is the same",))
     found = write_tables(plan, Outcome(records, 1, ("left alone",)), tmp_path)
     assert found == json.loads((tmp_path / "batch.json").read_text())
     assert found["counts"] | {"made": 1, "failed": 1} == found["counts"] and sum(found["counts"].values()) == 2
@@ -30,9 +31,9 @@ def test_counts_rows_and_links(tmp_path: Path) -> None:
     assert found["notes"] == ["one is the same", "left alone"]
 
     rows = list(csv.DictReader((tmp_path / "batch.csv").read_text().splitlines()))
-    assert [(row["job"], row["status"], row["n_pieces"], row["message"]) for row in rows] == [
-        (made.name, "made", "2", ""),
-        (bad.name, "failed", "", "no <faces>"),
+    assert [(row["job"], row["status"], row["pieces"], row["n_pieces"], row["message"]) for row in rows] == [
+        (made.name, "made", "fewest", "2", ""),
+        (bad.name, "failed", "usual", "", "no <faces>"),
     ]
     assert (rows[0]["pieces"], rows[0]["sensors"], rows[0]["d_mean"], rows[0]["attempts"]) == ("fewest", "/far/one.toml", "4.01234", "2")
 
