@@ -90,8 +90,10 @@ def mesh_files(given: Sequence[Path] = ()) -> list[Path]:
     return list(dict.fromkeys(files))
 
 
-def run(folder: Path, *, meshes: Sequence[Path] = (), repeats: int = REPEATS, progress: Progress = silent) -> dict[str, Any]:
-    """Measure, and write segment.csv, segment.png and segment.txt into `folder`.
+def run(
+    folder: Path, *, meshes: Sequence[Path] = (), sizes: Sequence[int] = (), repeats: int = REPEATS, progress: Progress = silent
+) -> dict[str, Any]:
+    """Measure, and write segment.csv, segment.png and segment.txt into `folder`; with `sizes` growth.csv and growth.png, too.
 
     Parameters
     ----------
@@ -99,6 +101,8 @@ def run(folder: Path, *, meshes: Sequence[Path] = (), repeats: int = REPEATS, pr
         There already.
     meshes : sequence of Path
         Beside those of `mesh_files`.
+    sizes : sequence of int
+        Triangles of a test disk that all methods are run on once, for how their time grows.
     repeats : int
         Of each method on each object, in turn with the others; the least time counts.
     progress : Progress
@@ -106,7 +110,7 @@ def run(folder: Path, *, meshes: Sequence[Path] = (), repeats: int = REPEATS, pr
     Returns
     -------
     dict
-        "sentence", "notes" (what to know of the measurement) and "rows".
+        "sentence", "notes" (what to know of the measurement) and "rows"; with `sizes` "growth", too.
 
     Raises
     ------
@@ -114,6 +118,7 @@ def run(folder: Path, *, meshes: Sequence[Path] = (), repeats: int = REPEATS, pr
         A mesh cannot be used, or a file not be written.
     """
     from skinfab.bench.segment_chart import draw
+    from skinfab.bench.segment_growth import follow
     from skinfab.bench.segment_words import sentence
     from skinfab.files import atomic_write
 
@@ -125,15 +130,17 @@ def run(folder: Path, *, meshes: Sequence[Path] = (), repeats: int = REPEATS, pr
             notes.append("this system cannot keep a process on one processor: libraries with threads of their own may use more")
         for aim in AIMS:
             _seams(Mesh(*bumpy_cap(_WARM_UP)), aim, Limits(mean=_WARM_UP_BOUND))
-        rows, refused = measure_objects(objects, peer if peer.present else None, repeats=repeats, progress=progress)
-    notes += refused
+        present = peer if peer.present else None
+        rows, refused = measure_objects(objects, present, repeats=repeats, progress=progress)
+        growth, too_large = follow(folder, sizes, present, progress=progress) if sizes else ([], [])
+    notes += refused + too_large
     write_csv(rows, folder / "segment.csv")
     # From here on only what the table holds is used, so that chart and sentence cannot say anything else.
     table = read_csv(folder / "segment.csv")
     said = sentence(table)
     atomic_write(folder / "segment.txt", "\n".join([said, *notes]) + "\n")
     draw(table, folder / "segment.png", notes=notes)
-    return {"sentence": said, "notes": notes, "rows": table}
+    return {"sentence": said, "notes": notes, "rows": table, **({"growth": growth} if sizes else {})}
 
 
 def measure_objects(

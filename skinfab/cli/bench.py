@@ -33,7 +33,7 @@ MODULES = {
     "flatten": ("skinfab.bench.flatten", True),
     "simplify": ("skinfab.bench.simplify", True),
     "gcode": ("gcode.bench", False),
-    "segment": ("skinfab.bench.segment", False),
+    "segment": ("skinfab.bench.segment", True),
     "calibrate": ("calibration.bench.calibrate", False),
     "control": ("calibration.bench.control", False),
     "force": ("skinfab.bench.force", False),
@@ -83,7 +83,10 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     p.add_argument("names", metavar="NAME", nargs="*", type=name, help="what to measure (default: everything)")
     p.add_argument("-o", "--output", metavar="DIR", type=Path, required=True, help="the folder to write into")
     p.add_argument(
-        "--sizes", metavar="N,N,...", type=sizes, help="triangles of the disks (default: 5000,20000,80000; simplify: 20000,80000,320000)"
+        "--sizes",
+        metavar="N,N,...",
+        type=sizes,
+        help="triangles of the disks (default: 5000,20000,80000; simplify: 20000,80000,320000; segment: none)",
     )
     p.add_argument(
         "--meshes", metavar="FILE", type=Path, nargs="+", default=[], help="segment: find seams on these too (default: the project's own)"
