@@ -52,4 +52,5 @@ pictures: demo
 	@mkdir -p docs/pictures
 	cp demo_out/preview.png docs/pictures/robot_finger.png
 	$(PYTHON) tools/draw_patterns.py
+	$(PYTHON) tools/draw_commands.py
 	@tests/setup_gui.sh && $(PYTHON) tools/draw_gui.py
