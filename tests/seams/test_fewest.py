@@ -51,6 +51,17 @@ def test_one_piece_and_less_seam_than_usual(sphere: tuple[Mesh, Seams]) -> None:
     assert seam_length(mesh, seams.cut) < 0.95 * seam_length(mesh, usual.cut)
 
 
+def test_a_looser_bound_needs_less_seam(sphere: tuple[Mesh, Seams]) -> None:
+    mesh, seams = sphere
+    looser = find_seams(mesh, Limits(mean=4.1), aim="fewest")
+    assert len(looser.pieces) == 1 and seam_length(mesh, looser.cut) < 0.95 * seam_length(mesh, seams.cut)
+
+
+def test_little_of_the_bound_is_left(sphere: tuple[Mesh, Seams]) -> None:
+    ((_, verdict),) = sphere[1].pieces
+    assert verdict.distortion.mean - 4 > 0.9 * (LIMITS.mean - 4)
+
+
 def test_the_same_every_time(sphere: tuple[Mesh, Seams]) -> None:
     mesh, seams = sphere
     again = find_seams(Mesh(mesh.V.copy(), mesh.F.copy()), LIMITS, aim="fewest")
