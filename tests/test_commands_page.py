@@ -73,7 +73,14 @@ def test_every_line_of_every_page_is_known(help_of: HelpOf) -> None:
 def test_what_is_wrong_is_found(help_of: HelpOf) -> None:
     page = PAGE.read_text().replace("## mould\n", "## mold\n").replace("pictures/strips.svg", "pictures/strip.svg")
     assert lacking(page) == ["mould has no section", "mold has no line of its own", "pictures/strip.svg"]
-    box = "```\nskinfab contact LOG -o DIR \\\n    --alarms 0.1   # so many\nskinfab nail learn A -o B\nskinfab sew\n.venv/bin/skinfab gui A    or B\n```\n"
+    lines = (
+        "skinfab contact LOG -o DIR \\",
+        "  --alarms 0.1  # so many",
+        "skinfab nail learn A -o B",
+        "skinfab sew",
+        ".venv/bin/skinfab gui A    or B",
+    )
+    box = "\n".join(["```", *lines, "```", ""])
     assert lines_of(box)[3] == "gui A"
     assert [fault for line in lines_of(box) for fault in unknown(line, help_of)] == [
         f"{lines_of(box)[0]}: --alarms",
