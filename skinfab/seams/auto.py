@@ -145,7 +145,13 @@ def _usual(mesh: Mesh, limits: Limits, neck: float, rules: EdgeRules | None, rep
     inner = replace(limits, mean=4 + _AIM * (limits.mean - 4))
     small = coarsen(mesh, _COARSE_FACES)
     if small is mesh:
-        return _search(mesh, inner, limits, neck, rules, report)
+        try:
+            return _search(mesh, inner, limits, neck, rules, report)
+        except RefusedError:
+            if rules is None:
+                raise
+            # What is forbidden may leave no seam for less than the bound, and one for the bound.
+            return _search(mesh, limits, limits, neck, rules, lambda done: report(1.0))
     locked = None if rules is None else transfer(mesh, rules.locked, small)
     small_rules = None if rules is None or locked is None else coarse_rules(mesh, rules, small, locked)
     seams = _search(small, inner, limits, neck, small_rules, lambda done: report(0.5 * done))

@@ -31,7 +31,7 @@ class _Outlook:
     size: float
 
 
-def grow_dart(mesh: Mesh, piece: OpenPiece, d: FloatArray, weight: FloatArray) -> IntArray:
+def grow_dart(mesh: Mesh, piece: OpenPiece, d: FloatArray, weight: FloatArray, *, forbidden: NDArray[np.bool_] | None = None) -> IntArray:
     """Mesh edges of a dart from the most distorted vertex to the boundary.
 
     The worst vertex weighs the excess of d about it, its distance to the boundary (a dart from a vertex beside
@@ -46,16 +46,18 @@ def grow_dart(mesh: Mesh, piece: OpenPiece, d: FloatArray, weight: FloatArray) -
         Distortion of each of its faces.
     weight : (e,) float
         Cost of cutting each mesh edge.
+    forbidden : (e,) bool, optional
+        Mesh edges that it does not take: the worst of the vertices that it can reach without them.
 
     Returns
     -------
     (j,) int64
-        None when no vertex lies inside the piece.
+        None when no vertex lies inside the piece, or none can be reached.
     """
-    seen = _look(mesh, piece, d, weight)
-    if seen is None:
+    seen = _look(mesh, piece, d, weight if forbidden is None else np.where(forbidden, np.inf, weight))
+    if seen is None or not np.isfinite(worst := _worst(seen)).any():
         return np.zeros(0, dtype=np.int64)
-    path = trace(seen.before, int(np.argmax(_worst(seen))))
+    path = trace(seen.before, int(np.argmax(worst)))
     return mesh_edges(mesh, piece, piece.topology.edge_ids(path))
 
 
@@ -67,6 +69,7 @@ def _look(mesh: Mesh, piece: OpenPiece, d: FloatArray, weight: FloatArray) -> _O
         return None
     edge_weight = weight[mesh_edges(mesh, piece, np.arange(len(topology.E)))]
     distance, before = shortest_tree(edge_graph(topology, edge_weight, n), np.flatnonzero(on_boundary))
+    on_boundary |= ~np.isfinite(distance)  # nor can a dart begin where no way leads to
     area = mesh.face_areas[piece.faces]
     corner = piece.F.ravel()
     around = np.maximum(np.bincount(corner, np.repeat(area, 3), n), np.finfo(float).tiny)

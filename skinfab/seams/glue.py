@@ -35,8 +35,9 @@ def glue_pieces(
     tolerance: float = NEWTON_DECREASE,
     locked: BoolArray | None = None,
     whole: bool = False,
+    cost: NDArray[np.float64] | None = None,
 ) -> tuple[BoolArray, list[Judged]]:
-    """Glue neighbours, the longest border first, as long as the result keeps to `limits`.
+    """Glue neighbours, the longest (or dearest) border first, as long as the result keeps to `limits`.
 
     Parameters
     ----------
@@ -57,6 +58,8 @@ def glue_pieces(
         Edges that stay cut.
     whole : bool
         Two pieces are joined along all they have in common or not at all, so that no seam is left inside the joined piece.
+    cost : (e,) float, optional
+        Of a seam along each edge: the dearest border is glued first; default its length.
 
     Returns
     -------
@@ -71,7 +74,7 @@ def glue_pieces(
     blunt = ~_is_cone(mesh)
     fresh = len(judged)
     for _ in range(_MOST_TRIALS):
-        chain = _longest_chain(mesh, cut if locked is None else cut & ~locked, owner, blunt, refused, neck)
+        chain = _longest_chain(mesh, cut if locked is None else cut & ~locked, owner, blunt, refused, neck, cost)
         if chain is None:
             break
         (a, b), edges = chain
@@ -122,7 +125,13 @@ def _is_cone(mesh: Mesh) -> BoolArray:
 
 
 def _longest_chain(
-    mesh: Mesh, cut: BoolArray, owner: IntArray, blunt: BoolArray, refused: set[tuple[int, int, int]], neck: float
+    mesh: Mesh,
+    cut: BoolArray,
+    owner: IntArray,
+    blunt: BoolArray,
+    refused: set[tuple[int, int, int]],
+    neck: float,
+    cost: NDArray[np.float64] | None,
 ) -> tuple[tuple[int, int], IntArray] | None:
     """The pair of pieces with the longest unbroken common border, and its edges."""
     topology = mesh.topology
@@ -134,9 +143,10 @@ def _longest_chain(
         return None
     run = _runs(topology.E[border], pair, blunt)
     length = np.bincount(run, mesh.edge_lengths[border])
-    for k in np.argsort(-length.round(9), kind="stable"):
+    worth = length if cost is None else np.bincount(run, cost[border])
+    for k in np.argsort(-worth.round(9), kind="stable"):
         if length[k] < neck:
-            break
+            continue
         edges = border[run == k]
         a, b = pair[np.argmax(run == k)].tolist()
         if (a, b, int(edges.min())) not in refused:

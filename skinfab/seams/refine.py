@@ -93,7 +93,7 @@ def refine_seams(
                 if progress:
                     progress(finished_area / mesh.area)
                 continue
-        opened, darts = next_cut(mesh, piece, verdict, weight, darts)
+        opened, darts = next_cut(mesh, piece, verdict, weight, darts, forbidden=forbidden)
         if forbidden is not None and forbidden[opened].any():
             kept = opened[forbidden[opened]]
             opened = opened[~forbidden[opened]]
@@ -108,7 +108,13 @@ def refine_seams(
 
 
 def next_cut(
-    mesh: Mesh, piece: OpenPiece, verdict: Verdict | None, weight: NDArray[np.float64], darts: int = 0
+    mesh: Mesh,
+    piece: OpenPiece,
+    verdict: Verdict | None,
+    weight: NDArray[np.float64],
+    darts: int = 0,
+    *,
+    forbidden: BoolArray | None = None,
 ) -> tuple[NDArray[np.int64], int]:
     """Mesh edges to open next, and how many darts the piece then has.
 
@@ -122,13 +128,15 @@ def next_cut(
         Cost of cutting each edge.
     darts : int
         It has already.
+    forbidden : (e,) bool, optional
+        Edges that a dart goes round; what parts the piece may still take some.
     """
     if verdict is None:
         topology = piece.topology
         edge_weight = weight[mesh_edges(mesh, piece, np.arange(len(topology.E)))]
         return mesh_edges(mesh, piece, cut_to_disk(topology, edge_weight, len(piece.vertices))), darts
     if verdict.too_distorted and not verdict.too_large and darts < _MOST_DARTS:
-        dart = grow_dart(mesh, piece, verdict.distortion.d, weight)
+        dart = grow_dart(mesh, piece, verdict.distortion.d, weight, forbidden=forbidden)
         if len(dart):
             return dart, darts + 1
     if verdict.neck is not None and not verdict.too_large:

@@ -9,10 +9,12 @@ from __future__ import annotations
 import heapq
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
+from skinfab.errors import RefusedError
 from skinfab.mesh.model import Mesh
 from skinfab.seams.coarse import coarsen, transfer
 from skinfab.seams.creases import borders, without_scraps
@@ -85,10 +87,19 @@ def simplest_seams(
     never = None if marked is None else marked.forbidden
     if never is not None:
         cut &= ~never
-    cut, pieces = refine_seams(
-        small, cut, inner, weight, tolerance=_SEARCH_DECREASE, forbidden=never, progress=lambda done: report(0.4 * done)
+    search = partial(refine_seams, small, cut, weight=weight, tolerance=_SEARCH_DECREASE, forbidden=never)
+    try:
+        cut, pieces = search(inner, progress=lambda done: report(0.4 * done))
+    except RefusedError:
+        if never is None or small is not mesh:
+            raise
+        # What is forbidden may leave no seam for less than the bound, and one for the bound.
+        report(0.4)
+        cut, pieces = search(limits)
+    cost = None if marked is None else small.edge_lengths * marked.factor
+    cut, pieces = glue_pieces(
+        small, cut, pieces, inner, neck=neck, excess=np.inf, tolerance=_SEARCH_DECREASE, locked=there, whole=True, cost=cost
     )
-    cut, pieces = glue_pieces(small, cut, pieces, inner, neck=neck, excess=np.inf, tolerance=_SEARCH_DECREASE, locked=there, whole=True)
     report(0.7)
     if small is not mesh:
         ends = np.unique(small.topology.E[there]), np.unique(mesh.topology.E[locked])
