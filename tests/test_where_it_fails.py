@@ -3,6 +3,7 @@
 import ast
 import re
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -31,6 +32,7 @@ def faults(page: str, there: dict[str, set[str]]) -> list[str]:
     return lacks
 
 
+@cache
 def stability() -> dict[str, set[str]]:
     return {
         path.name: {node.name for node in ast.parse(path.read_text()).body if isinstance(node, ast.FunctionDef)}
