@@ -220,7 +220,7 @@ class _Submitting:
             raise InputError(GONE)
         if isinstance(fault, InputError):
             raise fault  # of the folder: no other job could be done either
-        if isinstance(fault, KilledWorker) and times < ATTEMPTS:
-            self._waiting.append((job, times + 1))  # by the scheduler's count; the job's own decides
+        if isinstance(fault, KilledWorker) and times <= ATTEMPTS:
+            self._waiting.append((job, times + 1))  # the scheduler counts what waited there too: the job's own count decides
             return None
         return {"job": job.name, "status": "not run", "message": f"{type(fault).__name__}: {fault}; run again"}

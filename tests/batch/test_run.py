@@ -25,11 +25,13 @@ from skinfab.errors import InputError
 
 @pytest.fixture(scope="module")
 def scheduler(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
-    """The address of a cluster with two workers that a nanny starts again when they die."""
+    """The address of a cluster with two workers that a nanny starts again when they die; it gives a task up when two have died of it."""
+    import dask
     from distributed import LocalCluster
 
     with (
         cluster._silent_logs(),
+        dask.config.set({"distributed.scheduler.allowed-failures": 1}),
         LocalCluster(
             n_workers=2,
             threads_per_worker=1,
