@@ -1,6 +1,6 @@
 """The fewest pieces, and little seam: a short slit, then dart after dart; in the end what can be spared is closed again.
 
-The darts are found on a mesh of some 1500 triangles, from a few starts. A finer mesh is bent less by each of its triangles
+The darts are found on a mesh of some 1000 triangles, from a few starts. A finer mesh is bent less by each of its triangles
 and shows less d: there as much seam is closed again, or a few more darts are cut, as it takes to use the bound to the full.
 """
 
@@ -33,7 +33,7 @@ IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 
 #: Darts are found on about this many triangles, ...
-_COARSE_FACES = 1500
+_COARSE_FACES = 1000
 
 #: ... and tried on at most about this many.
 _MIDDLE_FACES = 8000
