@@ -7,6 +7,7 @@ import shapes
 from skinfab.mesh.model import Mesh
 from skinfab.seams.cut import open_pieces
 from skinfab.seams.judge import Limits, excess, judge
+from skinfab.seams.lenient import fault_of
 from skinfab.tolerances import OVERLAP_FRACTION
 
 
@@ -70,3 +71,6 @@ def test_a_neck_is_refused_where_one_is_asked_about() -> None:
     narrow = verdict(V, F, neck=4.0)
     assert narrow.neck is not None and not narrow.accepted
     assert narrow.neck.width == pytest.approx(2, abs=0.1)
+    assert fault_of(narrow, Limits(neck=4.0)) == (
+        "has a neck 2.0 mm wide, and 4 mm survive handling: cut it there, or glue a dart beside it"
+    )
