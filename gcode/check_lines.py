@@ -36,7 +36,7 @@ makes its own
         return
     for line, raw in enumerate(lines_of(text), 1):
         found = _SUMMED.match(raw) if "*" in raw else None
-        if found and int(found[2]) != (made := checksum(found[1])):
+        if found and (found[2].lstrip("0") or "0") != str(made := checksum(found[1])):
             yield Finding(
                 line,
                 f"its checksum is {found[2]}, its bytes make {made}, so the printer refuses it again and again",

@@ -96,6 +96,8 @@ class _Reader:
         """The speed that holds from this line on; its F is taken out of `words`."""
         if (feed := words.pop("F", None)) is not None:
             self.speed = feed / 60
+            if not self.speed > 0:
+                raise InputError(f"line {command.line}: F{feed:g} is no speed, which skinfab does not write")
         if self.speed is None:
             raise InputError(f"line {command.line}: no speed F was given yet")
         return self.speed

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Iterator
 from dataclasses import dataclass
 from importlib import resources
@@ -10,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from skinfab.errors import InputError
+from skinfab.toml_file import read_toml
 
 
 @dataclass(frozen=True)
@@ -94,22 +94,22 @@ def bundled_printers() -> tuple[str, ...]:
 def _load(name: str | Path) -> tuple[str, dict[str, Any]]:
     """A profile by itself, and what to call it."""
     path = Path(name)
+    if "\0" in str(name):
+        raise InputError(f"no printer profile can be named {str(name)!r}; there are {', '.join(bundled_printers())}, or give a .toml file")
     if path.suffix == ".toml":
         source: Any = path
         called = str(path.resolve())
     else:
         source = resources.files("gcode") / "profiles" / f"{name}.toml"
         called = str(name)
-        if not source.is_file():
+        if called not in bundled_printers():
             raise InputError(f"no printer profile named {str(name)!r}; there are {', '.join(bundled_printers())}, or give a .toml file")
     try:
-        return called, tomllib.loads(source.read_text(encoding="utf-8"))
+        return called, read_toml(source, path)
     except FileNotFoundError:
         raise InputError(f"no printer profile at {path}") from None
     except OSError as fault:
         raise InputError(f"cannot read the printer profile {path}: {fault.strerror or fault}") from fault
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as fault:
-        raise InputError(f"{path} is not a TOML file: {fault}") from fault
 
 
 def _parent(named: Any, source: str) -> str | Path | None:

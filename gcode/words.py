@@ -60,8 +60,11 @@ _COMMAND = re.compile(r"(?:[Nn]\d{1,9}\s*)?([GMTO])\s*(\d{1,5})(\.\d{1,3})?(?![\
 _BARE = re.compile(r"(?:N\d{1,9}\s*)?(?=[EFIJKRSXYZ]\s*[-+.\d])", re.IGNORECASE)
 _WORD = re.compile(r"\s*([A-Z])\s*([-+]?(?:\d+\.?\d*|\.\d+))?", re.IGNORECASE)
 
-#: Words as nearly every line has them, so short that each number is finite.
-_PLAIN = re.compile(r"(?:\s*[A-FH-LN-SU-Z]\s*[-+]?(?:\d{1,99}(?:\.\d{0,99})?|\.\d{1,99}))*\s*")
+#: No number on a printer is larger, in whatever unit; of far larger ones neither lengths nor angles could be computed.
+LARGEST = 1e8
+
+#: Words as nearly every line has them, so short that no number is too large.
+_PLAIN = re.compile(r"(?:\s*[A-FH-LN-SU-Z]\s*[-+]?(?:\d{1,8}(?:\.\d{0,99})?|\.\d{1,99}))*\s*")
 _PLAIN_WORD = re.compile(r"([A-Z])\s*([-+.\d]+)")
 #: Of an object (M486): it comes last, as `A"name"` or `Aname`.
 _NAME = re.compile(r"[Aa\"].*")
@@ -212,6 +215,8 @@ def _words(rest: str, line: int, code: str) -> dict[str, float | None]:
         value = None if found[2] is None else float(found[2])
         if value is not None and not math.isfinite(value):
             raise InputError(f"line {line}: {letter} is not a finite number; write it out in millimetres")
+        if value is not None and abs(value) > LARGEST:
+            raise InputError(f"line {line}: {letter} is {value:.3g}, which is no number for a printer; write it anew in millimetres")
         if letter in words or letter in ("GM" if code in _TAKE_T else "GMT"):
             raise InputError(f"line {line}: a second {letter} on one line; give each command a line of its own")
         words[letter] = value

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-import tomllib
 from collections.abc import Sequence
 from dataclasses import MISSING, dataclass, fields
 from importlib import resources
@@ -13,6 +12,7 @@ from typing import Any
 
 from skinfab.errors import InputError
 from skinfab.tolerances import PARAMETER_ROUNDING_MM, PARAMETER_STEP_MM
+from skinfab.toml_file import read_toml
 
 #: The bundled profile of the paper's process.
 DEFAULT_MATERIAL = "carbon-grease-ecoflex"
@@ -107,17 +107,20 @@ def load_material(name: str | Path = DEFAULT_MATERIAL) -> Material:
         source: Any = path
     else:
         source = bundled / f"{name}.toml"
-        if not source.is_file():
-            known = sorted(p.name[:-5] for p in bundled.iterdir() if p.name.endswith(".toml"))
+        known = sorted(p.name[:-5] for p in bundled.iterdir() if p.name.endswith(".toml"))
+        if str(name) not in known:
             raise InputError(f"no material profile named {str(name)!r}; there are {', '.join(known)}, or give a .toml file")
     try:
-        data = tomllib.loads(source.read_text(encoding="utf-8"))
+        data = read_toml(source, path)
     except FileNotFoundError:
         raise InputError(f"no material profile at {path}") from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as fault:
-        raise InputError(f"{path} is not a TOML file: {fault}") from fault
+    except OSError as fault:
+        raise InputError(f"cannot read the material profile {path}: {fault.strerror or fault}") from fault
     where = f"material profile {name}"
-    layers = tuple(_build(Layer, layer, f"{where}, layer") for layer in data.pop("layers", []))
+    described = data.pop("layers", [])
+    if not isinstance(described, list):
+        raise InputError(f"{where}: 'layers' must be a list of tables; write [[layers]] with two brackets")
+    layers = tuple(_build(Layer, layer, f"{where}, layer") for layer in described)
     parts = {"ink": _build(Ink, data.pop("ink", {}), f"{where}, [ink]"), "mould": _build(Mould, data.pop("mould", {}), f"{where}, [mould]")}
     material: Material = _build(Material, {**data, **parts, "layers": layers}, where)
     if (ink := material.ink).bead_width < ink.least_width - PARAMETER_ROUNDING_MM:
@@ -128,7 +131,9 @@ def load_material(name: str | Path = DEFAULT_MATERIAL) -> Material:
     return material
 
 
-def _build(kind: type, data: dict[str, Any], where: str) -> Any:
+def _build(kind: type, data: Any, where: str) -> Any:
+    if not isinstance(data, dict):
+        raise InputError(f"{where} is {data!r}; it must be a table")
     expected = {f.name: f.type for f in fields(kind)}
     optional = {f.name for f in fields(kind) if f.default is not MISSING}
     if unknown := sorted(data.keys() - expected.keys()):
@@ -137,11 +142,23 @@ def _build(kind: type, data: dict[str, Any], where: str) -> Any:
         raise InputError(f"{where}: field {missing[0]!r} is missing")
     values = dict(data)
     for key, annotation in expected.items():
+        if annotation == "str" and not isinstance(values.get(key, ""), str):
+            raise InputError(f"{where}: {key} is {values[key]!r}; it must be a text in quotes")
+        if annotation.startswith("dict") and key in values:
+            _require_parts(values[key], f"{where}: {key}")
         if annotation == "float" and key in values:
             if isinstance(values[key], bool) or not isinstance(values[key], (int, float)) or not 0 <= values[key] < float("inf"):
                 raise InputError(f"{where}: {key} is {values[key]!r}; it must be a number, zero or more")
             values[key] = float(values[key])
     return kind(**values)
+
+
+def _require_parts(parts: Any, where: str) -> None:
+    if not isinstance(parts, dict):
+        raise InputError(f"{where} is {parts!r}; it must be a table of numbers")
+    for name, part in parts.items():
+        if isinstance(part, bool) or not isinstance(part, (int, float)) or not 0 <= part < float("inf"):
+            raise InputError(f"{where}, {name!r} is {part!r}; it must be a number, zero or more")
 
 
 def material_toml(material: Material, *, comments: Sequence[str] = ()) -> str:

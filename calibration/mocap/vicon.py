@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import csv
 import hashlib
+import itertools
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -75,8 +76,12 @@ def read_vicon(path: Path) -> Markers:
             except ValueError as fault:
                 raise InputError(f"{path}, frame {row[0]}, marker {label!r}: {fault}; mend the line, or leave its cells empty") from fault
         positions[label] = masked(cells) * scale
+    with np.errstate(over="ignore", invalid="ignore"):
+        time = (frame - frame[0]) / rate
+    if not np.isfinite(time).all():
+        raise InputError(f"{path}: frames {body[0][0]} to {body[-1][0]} at {rate:g} a second make no times; export it again")
     # By the frames' numbers: a line that was left out is a gap, and not a jump in time.
-    return Markers(path.name, hashlib.sha256(data).hexdigest(), rate, (frame - frame[0]) / rate, positions, tuple(notes))
+    return Markers(path.name, hashlib.sha256(data).hexdigest(), rate, time, positions, tuple(notes))
 
 
 def _rate(row: Sequence[str], where: str, *, comma: bool) -> float:
@@ -93,7 +98,7 @@ def _body(rows: Sequence[Sequence[str]], start: int) -> list[Sequence[str]]:
     """The section's lines, up to an empty one or whatever does not begin with a number."""
     body: list[Sequence[str]] = []
     for row in rows[start:]:
-        if not row or not row[0].isdigit():
+        if not row or not row[0].isdecimal():
             break
         body.append(row)
     return body
@@ -103,7 +108,7 @@ def _places(names: Sequence[str], columns: Sequence[str], path: Path, line: int)
     """The columns of each marker: its label stands over the first of them."""
     starts = [k for k, name in enumerate(names) if name]
     places: dict[str, tuple[int, int, int]] = {}
-    for k, end in zip(starts, [*starts[1:], len(columns)], strict=True):
+    for k, end in itertools.pairwise([*starts, len(columns)]):
         under = [name.upper() for name in columns[k:end]]
         if not set(_AXES) <= set(under):
             continue  # a rotation, a residual of its own: no marker

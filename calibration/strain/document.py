@@ -121,7 +121,7 @@ def load_calibration(path: str | Path) -> SensorCalibration:
         content = json.loads(path.read_text(encoding="utf-8"))
     except OSError as fault:
         raise InputError(f"{path}: {fault.strerror or fault}; give the calibration.json that skinfab calibrate wrote") from fault
-    except (UnicodeDecodeError, json.JSONDecodeError, RecursionError) as fault:
+    except (ValueError, RecursionError) as fault:  # ValueError: JSON, UTF-8 and digits alike
         raise InputError(f"{path} is no JSON file ({fault}); {again}") from fault
     if not isinstance(content, dict) or content.get("kind") != KIND:
         raise InputError(f"{path} is no calibration of a strain sensor; give the calibration.json that skinfab calibrate wrote")

@@ -5,13 +5,13 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, TypeAlias
 
 from skinfab.errors import InputError
+from skinfab.toml_file import read_toml
 
 #: What an option may be set to.
 Value: TypeAlias = str | int | float | bool
@@ -135,8 +135,8 @@ def _parent(path: Path) -> Path | None:
     if path.suffix != ".toml":
         return None
     try:
-        named = tomllib.loads(path.read_text(encoding="utf-8")).get("extends")
-    except (OSError, tomllib.TOMLDecodeError, UnicodeDecodeError):
+        named = read_toml(path, path).get("extends")
+    except (OSError, InputError):
         return None  # the job will say so
     return path.parent / named if isinstance(named, str) and named.endswith(".toml") else None
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import difflib
 import itertools
 import re
-import tomllib
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,6 +13,7 @@ from typing import Any, NoReturn
 from skinfab.batch.job import Job, Value, name_of
 from skinfab.batch.options import Options
 from skinfab.errors import InputError
+from skinfab.toml_file import MAX_BYTES, parse_toml
 
 #: More jobs are a slip of the pen: at a second each they would take twelve days on one core.
 MOST_JOBS = 1_000_000
@@ -73,15 +73,14 @@ def read_plan(path: str | Path, *, output: str | Path) -> Plan:
     """
     path = Path(path)
     try:
-        text = path.read_bytes().decode()
-        data = tomllib.loads(text)
+        with path.open("rb") as file:
+            raw = file.read(MAX_BYTES + 1)
     except OSError as fault:
         raise InputError(
             f"cannot read {path}: {fault.strerror or fault}; give a TOML file of meshes and settings (docs/batch.md)"
         ) from fault
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as fault:
-        raise InputError(f"{path} is not a TOML file: {fault}") from fault
-    return _Reader(path, text, Path(output).resolve()).plan(data)
+    data = parse_toml(raw, path)
+    return _Reader(path, raw.decode(), Path(output).resolve()).plan(data)
 
 
 class _Reader:

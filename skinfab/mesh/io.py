@@ -22,6 +22,9 @@ from skinfab.mesh.stl import parse_stl
 from skinfab.mesh.units import guess_units, mm_per, odd_size
 from skinfab.tolerances import LARGEST_OBJECT_MM, SMALLEST_OBJECT_MM
 
+#: No count has more, and Python converts no more than 4300.
+_DIGITS = 18
+
 FORMATS = (".obj", ".stl", ".ply", ".off", ".glb")
 
 
@@ -131,7 +134,8 @@ def _read_bytes(path: Path) -> bytes:
 def _parse(path: Path, data: bytes) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     suffix = path.suffix.lower()
     if suffix == ".obj":
-        return parse_obj(data, path.name)
+        with np.errstate(over="ignore", invalid="ignore"):  # of coordinates that are refused below
+            return parse_obj(data, path.name)
     if suffix == ".stl":
         return parse_stl(data, path.name)
     if suffix == ".ply":
@@ -149,9 +153,10 @@ def _check_ply_header(data: bytes, name: str) -> None:
     if data[:3] != b"ply" or end < 0:
         raise InputError(f"{name} is no PLY (no 'ply ... end_header' at its start); check the file or its extension")
     for element, count in re.findall(rb"element\s+(\w+)\s+(\d+)", data[:end]):
-        if int(count) > len(data) - end:
+        if len(count) > _DIGITS or int(count) > len(data) - end:
             raise InputError(
-                f"{name} is cut off: its header claims {int(count)} of {element.decode()!r}, but the file is shorter; export the mesh again"
+                f"{name} is cut off: its header claims {count[:_DIGITS].decode()} of {element.decode()!r}, "
+                "but the file is shorter; export the mesh again"
             )
 
 
@@ -159,7 +164,7 @@ def _check_off_header(data: bytes, name: str) -> None:
     words = re.sub(rb"#[^\n]*", b"", data[:4096]).split()[:4]
     if not words or not words[0].upper().endswith(b"OFF"):
         raise InputError(f"{name} is no OFF (it does not begin with 'OFF'); check the file or its extension")
-    if any(word.isdigit() and int(word) > len(data) for word in words[1:3]):
+    if any(word.isdigit() and (len(word) > _DIGITS or int(word) > len(data)) for word in words[1:3]):
         raise InputError(f"{name} is cut off: its header claims more elements than the file holds; export the mesh again")
 
 

@@ -39,7 +39,6 @@ from __future__ import annotations
 
 import difflib
 import math
-import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
@@ -52,6 +51,7 @@ from skinfab.patterns.registry import PATTERNS, make_pattern
 from skinfab.placement.auto import AutoOptions
 from skinfab.placement.check import refuse_narrow_bead
 from skinfab.placement.sensor import ID, ID_WORDS, Sensor
+from skinfab.toml_file import read_toml
 
 Vector: TypeAlias = tuple[float, float, float]
 
@@ -115,11 +115,9 @@ def read_sensors_file(path: str | Path, *, material: Material, present: Sequence
         No such file, not TOML, or a field unknown, missing or of the wrong type: says which sensor and which field.
     """
     try:
-        data = tomllib.loads(Path(path).read_text(encoding="utf-8"))
+        data = read_toml(Path(path), path)
     except OSError as fault:
         raise InputError(f"cannot read sensors from {path}: {fault.strerror}") from fault
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as fault:
-        raise InputError(f"{path} is not a TOML file: {fault}") from fault
     where = Path(path).name
     _known(data, ("auto", "sensor"), where)
     tables = data.get("sensor", [])

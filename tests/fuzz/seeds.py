@@ -1,0 +1,185 @@
+"""Whole files for every parser, as small as they can be: what is broken to look for findings."""
+
+from __future__ import annotations
+
+import io
+import tempfile
+import zipfile
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+
+from gcode.printer import load_printer
+from skinfab.readout.frame import Channel, Recording, Stream
+from skinfab.readout.logs.log import write_log
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+@cache
+def document() -> bytes:
+    from skinfab.cli.main import main
+
+    with tempfile.TemporaryDirectory() as folder:
+        document = Path(folder, "cube.skin")
+        assert main(["segment", str(ROOT / "meshes/cube.obj"), "-o", str(document)]) == 0
+        assert main(["place", str(document)]) == 0
+        return document.read_bytes()
+
+
+def document_texts() -> list[bytes]:
+    with zipfile.ZipFile(io.BytesIO(document())) as whole:
+        return [whole.read("skin.json")]
+
+
+def meshes(kind: str) -> list[bytes]:
+    import trimesh
+
+    V, F = np.array([[0.0, 0, 0], [30, 0, 0], [0, 30, 0], [0, 0, 30]]), [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]
+    solid = trimesh.Trimesh(V, F, process=False)
+    made = [solid.export(file_type=each) for each in ([kind, "stl_ascii"] if kind == "stl" else [kind])]
+    if kind == "ply":
+        made.append(solid.export(file_type="ply", encoding="ascii"))
+    if kind == "obj":
+        made.append("v 0 0 0\nv 1 0 0 .5 .5 .5\nv 0 1 0\nv 1 1 0\nvt 0 0\nvn 0 0 1\nf 1/1/1 2//1 -1 -2\n")
+    return [each.encode() if isinstance(each, str) else bytes(each) for each in made]
+
+
+def programs() -> list[bytes]:
+    from gcode.emit import emit
+    from gcode.geometry import Curve, Straight
+    from gcode.program import Comment, Dwell, Extrude, Prime, Program, Retract, Travel
+
+    steps = (
+        *(Comment("sensor C1"), Travel(z=5.0, speed=10.0), Travel(x=20.0, y=20.0, speed=50.0), Prime(1.0, 0.5)),
+        *(
+            Extrude(Straight((20.0, 20.0), (30.0, 20.0)), 2.0, 5.0),
+            Extrude(Curve((30.0, 20.0), (30.0, 30.0), (30.0, 25.0), False), 3.0, 5.0),
+        ),
+        *(Retract(1.0, 0.5), Dwell(0.5), Travel(z=10.0, speed=10.0)),
+    )
+    program = Program("P1", steps, None)
+    ours = [emit(program, load_printer(name)).encode() for name in ("generic-marlin", "generic-grbl")]
+    return [
+        *ours,
+        b"G28\nG90\nM83\nN1 G1 X10 Y10 E.5 F600*93\nG3 X2 Y0 I1 J0 E0.5 ; arc\nG2 X9 R5\nM3 S100\n(said)\nG92 E0\nG5 I1 J1 P1 Q1 X5\n",
+    ]
+
+
+def profiles() -> list[bytes]:
+    return [
+        *(file.read_bytes() for file in sorted((ROOT / "gcode/profiles").glob("*.toml"))),
+        b'extends = "generic-marlin"\n[bed]\nsize = [100, 100]\n',
+    ]
+
+
+def recording() -> Recording:
+    values = np.array([[0.5, 1.5], [np.nan, 2.5], [0.75, 1e9]])
+    return Recording.of_values(Stream("two", (Channel("a", "V"), Channel("b", "rad")), 100.0), values, device_time=np.arange(3) / 100)
+
+
+def wire() -> list[bytes]:
+    from skinfab.readout.packets import Layout
+
+    made = recording()
+    layout = Layout(made.stream)
+    packets = layout.description + b"".join(layout.frame_packet(frame) for frame in made) + b"hurt\0"
+    return [
+        packets,
+        b"\nsequence,time_ms,S1,S2\n7,20,1.5,nan\n8,30,1.5,2\n",
+        b"\n1,2\n1,3\n1,4\n2,5\n# said\n",
+        b"\n1,5;2,5\n1,6;2\n1;2\n1;3\n",
+    ]
+
+
+@cache
+def logs(name: str) -> list[bytes]:
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder, name)
+        write_log(recording(), path)
+        return [(next(path.glob("*.db3")) if path.is_dir() else path).read_bytes()]
+
+
+def tables() -> list[bytes]:
+    return [
+        *logs("a.csv"),
+        b"time_ms,S1,angle [deg]\n0,1.5,0\n10,1.25,\n20,1.0,30\n",
+        b"# simulated: true\ntimestamp;S1 (V);b\n2026-01-31 12:00:00.000;1,5;x\n2026-01-31 12:00:00.010;1,25;y\n",
+        b'time\t"a\tb"\n0\t1\n1\t2\n',
+    ]
+
+
+def captures() -> list[bytes]:
+    head = "Trajectories\n100\n,,hand:MCP,,,hand:PIP,,\nFrame,Sub Frame,X,Y,Z,X,Y,Z\n,,mm,mm,mm,mm,mm,mm\n"
+    cut = head + "1,0,1.5,2,3,4,5,6\n2,0,1.25"
+    return [
+        (head + "1,0,1,2,3,4,5,6\n2,0,1,2,3,,,\n").encode(),
+        cut.replace(",", ";").replace(".", ",").encode(),
+    ]
+
+
+def calibrations() -> list[bytes]:
+    from calibration.finger.logs import calibrated
+    from calibration.finger.simulated import HUMAN
+    from calibration.strain.document import save_calibration
+
+    with tempfile.TemporaryDirectory() as folder:
+        files = []
+        for model in ("poly", "branches", "play", "lag"):
+            save_calibration(calibrated(HUMAN, model), path := Path(folder, f"{model}.json"))
+            files.append(path.read_bytes())
+        return files
+
+
+def models() -> list[bytes]:
+    from skinfab.fingertip.saved import save_model
+
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder, "a.model")
+        save_model(path, kind="nail", version=1, facts={"simulated": True}, arrays={"w": np.eye(2), "k": np.arange(3)})
+        return [path.read_bytes()]
+
+
+def sensor_files() -> list[bytes]:
+    spiral = b'[[sensor]]\nkind = "contact-spiral"\nparams = { n = 3, x = 1.7, b = 1.5, l = 3, s = 15 }\n'
+    return [
+        b'[auto]\nkinds = ["contact-spiral"]\nsizes = [22, 15]\nper_piece = 2\n',
+        spiral + b'pose = { piece = "P1", x = 12.5, y = 20.0, angle_deg = 90 }\nid = "S1"\nchannel = 7\n',
+        spiral + b"pose = { point = [4.0, 0, 1] }\n",
+        b'[[sensor]]\nkind = "strain-lines"\nparams = { l1 = 60, l2 = 54, b = 6 }\n'
+        b"pose = { joint = [45.0, 0.0, 0.0], along = [1, 0, 0], facing = [0, 0, 1] }\n",
+    ]
+
+
+def plans() -> list[bytes]:
+    meshes = str(ROOT / "meshes/cube.obj").encode()
+    return [
+        b'meshes = ["' + meshes + b'"]\n[settings]\npieces = ["usual", "fewest"]\nmax-distortion = [4.05, 4.1]\n[limits]\ntime_s = 600\n'
+    ]
+
+
+def strip_tables() -> list[bytes]:
+    return [b"sensor,length_mm,r_kohm\nL1,30,12.5\nL2,60,\nL3,90,38\n", b"length_mm;r_kohm\n30,5;12,5\n60;25\n"]
+
+
+def wirings() -> list[bytes]:
+    head = b"wire,sensor,kind,piece,terminal,lead,x_mm,y_mm,channel,board,board_input,unit,low,median,high\n"
+    return [
+        head
+        + b"".join(
+            b"C1-%d,C1,contact-spiral,P1,%d,%s,2,3,17,2,1,kohm,49,154,487\n" % (k, k, lead) for k, lead in ((1, b"signal"), (2, b"return"))
+        )
+    ]
+
+
+def documents() -> list[bytes]:
+    return [document()]
+
+
+def materials() -> list[bytes]:
+    return [(ROOT / "skinfab/materials/carbon-grease-ecoflex.toml").read_bytes()]
+
+
+def cuts() -> list[bytes]:
+    return [b"12 87 14 # one\n3, 4, 5\n"]
