@@ -1,5 +1,5 @@
 # Two commands do everything, their own set-up included: `make demo` and `make test`.
-.PHONY: demo test collected setup lint peers lock pictures package audit
+.PHONY: demo test collected setup lint peers lock pictures package audit docs fuzz
 
 PYTHON = .venv/bin/python
 COMPILING = tests/test_docs.py tests/fingertip/array/test_contours.py tests/fingertip/array/test_layer.py
@@ -47,6 +47,17 @@ package: setup
 audit: setup
 	@test -x .venv-audit/bin/pip-audit || { $(PYTHON) -m venv .venv-audit && .venv-audit/bin/python -m pip install --quiet --only-binary :all: pip-audit; }
 	.venv-audit/bin/pip-audit --strict --disable-pip --no-deps -r requirements.lock
+
+# The reference of all that can be called from Python, into site/ (26 s of processor time).
+docs: setup
+	@$(PYTHON) -c "import mkdocs, mkdocstrings" 2>/dev/null || tools/extra.sh docs
+	$(PYTHON) tools/api.py site
+
+# Each parser searched for a minute, or as long as `make fuzz SECONDS=...` says; findings lie in .fuzz/.
+SECONDS = 60
+fuzz: setup
+	@$(PYTHON) -c "import atheris" 2>/dev/null || tools/extra.sh fuzz
+	@for name in $$($(PYTHON) tests/fuzz/search.py); do $(PYTHON) tests/fuzz/search.py $$name $(SECONDS) || exit 1; done
 
 pictures: demo
 	@mkdir -p docs/pictures
