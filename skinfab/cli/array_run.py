@@ -7,10 +7,10 @@ import csv
 import io
 import json
 import math
-import signal
 import time
 from collections import Counter
 from collections.abc import Sequence
+from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -70,9 +70,14 @@ def run(args: argparse.Namespace) -> int:
         if getattr(args, name) is not None and args.port is None:
             args.wrong_usage(f"--{name} is for a port")
     require_apart(args.output, FILES, [path for path in (args.log, args.model) if path is not None])
-    readings, watch, facts = _from_port(args) if args.port else _from_log(args)
-    result = _facts(readings, watch, facts)
-    _write(args.output, readings, watch.model, result)
+    with ExitStack() as until_written:
+        readings, watch, facts = _from_port(args, until_written) if args.port else _from_log(args)
+        result = _facts(readings, watch, facts)
+        _write(args.output, readings, watch.model, result)
+        return _say(args, result)
+
+
+def _say(args: argparse.Namespace, result: dict[str, Any]) -> int:
     if args.json:
         print(json.dumps(result, allow_nan=False))
         return 0
@@ -110,9 +115,11 @@ def _from_log(args: argparse.Namespace) -> tuple[tuple[Reading, ...], ArrayWatch
     return readings, watch, {"source": log.file, "sha256": log.sha256, "notes": notes, "latency_ms": None}
 
 
-def _from_port(args: argparse.Namespace) -> tuple[tuple[Reading, ...], ArrayWatch, dict[str, Any]]:
+def _from_port(args: argparse.Namespace, until_written: ExitStack) -> tuple[tuple[Reading, ...], ArrayWatch, dict[str, Any]]:
+    """What came until Ctrl-C, which once the port is open is held off in `until_written`."""
     from dataclasses import replace
 
+    from skinfab.cli.ending import ended_by_signals
     from skinfab.errors import InputError
     from skinfab.fingertip.array.geometry import tactel_columns
     from skinfab.fingertip.array.watch import ArrayWatch, warm_up
@@ -123,18 +130,16 @@ def _from_port(args: argparse.Namespace) -> tuple[tuple[Reading, ...], ArrayWatc
     lag = Lag()
     warm_up()
     with SerialPort(args.port, baud=args.baud or BAUD) as source:
+        stop = until_written.enter_context(ended_by_signals())
         model, notes = _model(args, tactel_columns(source.stream)[0])
         watch = ArrayWatch(source.stream, model)
         clock, end = HostClock(), time.monotonic() + (args.seconds or math.inf)
-        try:
-            while (left := end - time.monotonic()) > 0:
-                asked = clock.now()
-                if (frame := source.read(min(left, _WAIT_S))) is not None and (made := watch.step(frame)) is not None:
-                    lag.add(asked, frame.host_time, clock.now())
-                    readings.append(made)
-                    _tell(args, made.events)
-        except KeyboardInterrupt:
-            signal.setitimer(signal.ITIMER_REAL, 0)  # the way to end it: it has got through, and is not to come a second time
+        while not stop.is_set() and (left := end - time.monotonic()) > 0:
+            asked = clock.now()
+            if (frame := source.read(min(left, _WAIT_S))) is not None and (made := watch.step(frame)) is not None:
+                lag.add(asked, frame.host_time, clock.now())
+                readings.append(made)
+                _tell(args, made.events)
         counts = source.counts
     if not readings:
         raise InputError(f"{args.port} sent {counts.frames} frames, and the first second of them is rest; let it send for longer")

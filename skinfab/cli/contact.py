@@ -6,6 +6,7 @@ import argparse
 import json
 import math
 from collections.abc import Sequence
+from contextlib import ExitStack
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -85,6 +86,11 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 def run(args: argparse.Namespace) -> int:
     """Find contacts, write them down, and say what was found."""
+    with ExitStack() as until_written:
+        return _run(args, until_written)
+
+
+def _run(args: argparse.Namespace, until_written: ExitStack) -> int:
     from skinfab.cli.contact_files import FILES, TRUTH, write_files
     from skinfab.files import require_apart
 
@@ -95,7 +101,7 @@ def run(args: argparse.Namespace) -> int:
         sessions, scores = _simulated(args)
         notes: list[str] = []
     else:
-        sessions, notes = _watched(args) if kind == "port" else _logged(args)
+        sessions, notes = _watched(args, until_written) if kind == "port" else _logged(args)
     _require_watched(sessions)
     from calibration.contact.table import contact_table
 
@@ -137,13 +143,19 @@ def _kind(args: argparse.Namespace) -> str:
     return kind
 
 
-def _watched(args: argparse.Namespace) -> tuple[dict[str, list[Trial]], list[str]]:
+def _watched(args: argparse.Namespace, until_written: ExitStack) -> tuple[dict[str, list[Trial]], list[str]]:
     from skinfab.cli.contact_port import watch_port
     from skinfab.wired import load_wiring
 
     wires = load_wiring(args.wiring) if args.wiring else ()
     recording, found, notes = watch_port(
-        args.logs[0], baud=args.baud, seconds=args.seconds, false_alarms=args.false_alarms, channels=args.channel, wires=wires
+        args.logs[0],
+        baud=args.baud,
+        seconds=args.seconds,
+        false_alarms=args.false_alarms,
+        channels=args.channel,
+        wires=wires,
+        until_written=until_written,
     )
     return {recording.stream.name: [Trial(recording.stream.name, "", recording, found)]}, notes
 

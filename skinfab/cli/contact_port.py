@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-import signal
+import threading
 import time
 from collections.abc import Sequence
+from contextlib import ExitStack
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -33,11 +34,13 @@ def watch_port(
     false_alarms: float,
     channels: Sequence[str] | None,
     wires: Sequence[Wire] = (),
+    until_written: ExitStack,
 ) -> tuple[Recording, Detection, list[str]]:
     """Watch a port until Ctrl-C, or for a while: its frames, the contacts in them, and what is to be said of it.
 
     Where what it sends does not say how many frames come a second, as plain lines do not, they are counted first.
     With `wires` its channels are called after their sensors, and what they read at rest is compared with what was predicted.
+    Once the port is open Ctrl-C is held off in `until_written`, which the caller leaves when what came is written.
 
     Raises
     ------
@@ -45,6 +48,7 @@ def watch_port(
         It cannot be opened, sends nothing, too little to know its rate, has no such channel, or is not the skin of those wires.
     """
     from calibration.contact.detector import ContactDetector
+    from skinfab.cli.ending import ended_by_signals
     from skinfab.errors import InputError
     from skinfab.readout.frame import Recording
     from skinfab.readout.serial_port import BAUD, SerialPort
@@ -53,24 +57,22 @@ def watch_port(
     frames: list[Frame] = []
     notes: list[str] = []
     with SerialPort(port, baud=baud or BAUD) as source:
+        stop = until_written.enter_context(ended_by_signals())
         stream, end = source.stream, time.monotonic() + (seconds or math.inf)
         if wires:
             stream, told_of = wired(stream, wires)
             notes += told_of
         if not stream.rate_hz:
-            stream = replace(stream, rate_hz=_counted(source, frames, end))
+            stream = replace(stream, rate_hz=_counted(source, frames, end, stop))
             notes.append(f"{port} does not say how many frames come a second; {stream.rate_hz:.4g} were counted")
         watch = ContactDetector(stream, false_alarms=false_alarms, channels=channels)
         told = Told(watch)
-        try:
-            for frame in frames:
-                told.step(frame)
-            while (left := end - time.monotonic()) > 0:
-                if (got := source.read(min(left, _WAIT_S))) is not None:
-                    frames.append(got)
-                    told.step(got)
-        except KeyboardInterrupt:
-            signal.setitimer(signal.ITIMER_REAL, 0)  # the way to end it: it has got through, and is not to come a second time
+        for frame in frames:
+            told.step(frame)
+        while not stop.is_set() and (left := end - time.monotonic()) > 0:
+            if (got := source.read(min(left, _WAIT_S))) is not None:
+                frames.append(got)
+                told.step(got)
         counts = source.counts
     if not frames:
         raise InputError(f"{port} sent no frame; is the device running?")
@@ -83,7 +85,7 @@ def watch_port(
     return recording, watch.found(), notes
 
 
-def _counted(source: SerialPort, frames: list[Frame], end: float) -> float:
+def _counted(source: SerialPort, frames: list[Frame], end: float, stop: threading.Event) -> float:
     """How many frames come a second; those that were counted are put into `frames`.
 
     Over all of them: lines arrive in bunches, so their distances say little.
@@ -91,7 +93,7 @@ def _counted(source: SerialPort, frames: list[Frame], end: float) -> float:
     from skinfab.errors import InputError
 
     until = min(time.monotonic() + _COUNTED_S, end)
-    while (left := until - time.monotonic()) > 0 or (len(frames) < _COUNTED and time.monotonic() < end):
+    while not stop.is_set() and ((left := until - time.monotonic()) > 0 or (len(frames) < _COUNTED and time.monotonic() < end)):
         if (frame := source.read(min(max(left, 0.0) or _WAIT_S, _WAIT_S))) is not None:
             frames.append(frame)
     spans = frames[-1].device_time - frames[0].device_time if len(frames) >= _COUNTED else 0.0

@@ -6,6 +6,7 @@ import argparse
 import json
 import math
 from collections.abc import Mapping
+from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -127,6 +128,11 @@ def simulate(args: argparse.Namespace) -> int:
 
 def run(args: argparse.Namespace) -> int:
     """Locate, find events, write them down, and say what was found."""
+    with ExitStack() as until_written:
+        return _run(args, until_written)
+
+
+def _run(args: argparse.Namespace, until_written: ExitStack) -> int:
     _require_usage(args)
     import numpy as np
 
@@ -144,7 +150,7 @@ def run(args: argparse.Namespace) -> int:
     truth = read_events(args.truth) if args.truth else {}
     latency: dict[str, float] = {}
     if args.port is not None:
-        logs, events, latency = _watched(args, surface, least, model)
+        logs, events, latency = _watched(args, surface, least, model, until_written)
     else:
         logs, events = _logged(args, surface, least, model)
     noise = model.noise if model else None
@@ -235,7 +241,7 @@ def reach(surface: Hemisphere | TipMesh) -> float:
 
 
 def _watched(
-    args: argparse.Namespace, surface: Hemisphere | TipMesh, least: float, model: TouchModel | None
+    args: argparse.Namespace, surface: Hemisphere | TipMesh, least: float, model: TouchModel | None, until_written: ExitStack
 ) -> tuple[list[WrenchLog], list[list[Motion]], dict[str, float]]:
     """What a port sent, its events, and how long decisions took."""
     from skinfab.cli.force_port import watch_port
@@ -253,6 +259,7 @@ def _watched(
         tare=args.tare,
         model=model,
         quiet=args.json,
+        until_written=until_written,
     )
     notes = live.notes
     if model is None:  # a matrix mixes what is dead with what lives

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-import signal
 import statistics
 import time
 from collections.abc import Sequence
+from contextlib import ExitStack
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -79,6 +79,7 @@ def watch_port(
     tare: float = 0.0,
     model: TouchModel | None = None,
     quiet: bool = False,
+    until_written: ExitStack,
 ) -> Watched:
     """Watch a port until Ctrl-C, or for a while, and tell contacts and motions as they come.
 
@@ -99,6 +100,8 @@ def watch_port(
         How the sensor is mounted, and its noise.
     quiet : bool
         Tell nothing.
+    until_written : ExitStack
+        In which Ctrl-C is held off once the port is open; the caller leaves it when what came is written.
 
     Raises
     ------
@@ -108,6 +111,7 @@ def watch_port(
     """
     import numpy as np
 
+    from skinfab.cli.ending import ended_by_signals
     from skinfab.errors import InputError
     from skinfab.fingertip.force.contact import LEAST_FORCE_N, locate
     from skinfab.fingertip.force.logs import WrenchLog
@@ -121,6 +125,7 @@ def watch_port(
     # Compiled now: the first sample of the port would wait a second for it.
     locate(np.array([[0.0, 0.0, -1.0]]), np.zeros((1, 3)), surface)
     with SerialPort(port, baud=baud or BAUD) as source:
+        stop = until_written.enter_context(ended_by_signals())
         stream = source.stream
         columns, scale, said = _columns(stream, port)
         if not stream.rate_hz:
@@ -132,29 +137,26 @@ def watch_port(
         units = None if said else _Units(port, watch.surface, least)
         clock, end = HostClock(), time.monotonic() + (seconds or math.inf)
         missing, began = 0, clock.now()
-        try:
-            while (left := end - time.monotonic()) > 0:
-                frame = source.read(min(left, _WAIT_S))
-                if frame is None:
-                    continue
-                if not frame.valid[columns].all() or frame.saturated[columns].any():
-                    missing += 1
-                    continue
-                wrench = rest.less(frame.device_time, scale * frame.values[columns])
-                if wrench is None:
-                    continue
-                if units:
-                    units.look(wrench)
-                wrench = model.matrix @ wrench if model else wrench
-                new = watch.step(frame.device_time, wrench[:3], wrench[3:])
-                if frame.host_time >= began:
-                    latency.append(clock.now() - frame.host_time)
-                rows.append((frame.device_time, *wrench.tolist()))
-                for each in new:
-                    motions[each.told] = each
-                teller.step(frame.device_time, wrench, new)
-        except KeyboardInterrupt:
-            signal.setitimer(signal.ITIMER_REAL, 0)  # the way to end it: it has got through, and is not to come a second time
+        while not stop.is_set() and (left := end - time.monotonic()) > 0:
+            frame = source.read(min(left, _WAIT_S))
+            if frame is None:
+                continue
+            if not frame.valid[columns].all() or frame.saturated[columns].any():
+                missing += 1
+                continue
+            wrench = rest.less(frame.device_time, scale * frame.values[columns])
+            if wrench is None:
+                continue
+            if units:
+                units.look(wrench)
+            wrench = model.matrix @ wrench if model else wrench
+            new = watch.step(frame.device_time, wrench[:3], wrench[3:])
+            if frame.host_time >= began:
+                latency.append(clock.now() - frame.host_time)
+            rows.append((frame.device_time, *wrench.tolist()))
+            for each in new:
+                motions[each.told] = each
+            teller.step(frame.device_time, wrench, new)
         counts = source.counts
     if not rows:
         after = f" after the {tare:g} s in which it rests" if tare else ""

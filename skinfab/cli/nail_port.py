@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-import signal
 import time
+from contextlib import ExitStack
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -36,14 +36,18 @@ def watch_port(
     rate_hz: float | None,
     units_said: bool | None,
     quiet: bool,
+    until_written: ExitStack,
 ) -> tuple[list[Told], dict[str, Any]]:
     """Decide on what a port sends until Ctrl-C, or for a while; what is touched is printed as it changes.
+
+    Once the port is open Ctrl-C is held off in `until_written`, which the caller leaves when what came is written.
 
     Raises
     ------
     InputError
         The port cannot be read, or what it sends is not what the model learned from.
     """
+    from skinfab.cli.ending import ended_by_signals
     from skinfab.cli.record import outage_notes, outages
     from skinfab.fingertip.nail.histogram_model import HistogramModel
     from skinfab.fingertip.nail.live import NailWatch
@@ -55,29 +59,27 @@ def watch_port(
     latency: list[float] = []
     speaker = _Speaker(quiet, agree=1 if isinstance(model, HistogramModel) else _AGREE)
     with SerialPort(port, baud=baud or BAUD) as source:
+        stop = until_written.enter_context(ended_by_signals())
         watch = NailWatch(model, source.stream, samples=samples, every=every, regression=regression, rate_hz=rate_hz)
         clock, end = HostClock(), time.monotonic() + (seconds or math.inf)
         began, began_at, heard = clock.now(), time.time(), time.monotonic()
         frames, passed_over, busy = 0, 0, 0.0
-        try:
-            while (left := end - time.monotonic()) > 0:
-                if (frame := source.read(min(left, _WAIT_S))) is None:
-                    speaker.silence(port, time.monotonic() - heard)
-                    continue
-                heard = time.monotonic()
-                if frame.host_time < began:  # what gathered meanwhile is old, and would make all that follows late
-                    passed_over += 1
-                    continue
-                frames += 1
-                before = time.thread_time()  # of this alone: whatever else runs makes it wait for a processor too
-                made = watch.step(frame)
-                busy += time.thread_time() - before
-                if made is not None:
-                    latency.append(1000 * (clock.now() - frame.host_time))
-                    told.append(made)
-                    speaker.hear(made)
-        except KeyboardInterrupt:
-            signal.setitimer(signal.ITIMER_REAL, 0)  # the way to end it: it has got through, and is not to come a second time
+        while not stop.is_set() and (left := end - time.monotonic()) > 0:
+            if (frame := source.read(min(left, _WAIT_S))) is None:
+                speaker.silence(port, time.monotonic() - heard)
+                continue
+            heard = time.monotonic()
+            if frame.host_time < began:  # what gathered meanwhile is old, and would make all that follows late
+                passed_over += 1
+                continue
+            frames += 1
+            before = time.thread_time()  # of this alone: whatever else runs makes it wait for a processor too
+            made = watch.step(frame)
+            busy += time.thread_time() - before
+            if made is not None:
+                latency.append(1000 * (clock.now() - frame.host_time))
+                told.append(made)
+                speaker.hear(made)
         counts, gone = source.counts, outages(source, began_at, time.time())
         facts = {
             "source": port,

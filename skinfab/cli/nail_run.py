@@ -7,6 +7,7 @@ import json
 import math
 from collections import Counter
 from collections.abc import Sequence
+from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -60,6 +61,11 @@ def add_options(p: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Decide, write, and say what came out."""
+    with ExitStack() as until_written:
+        return _run(args, until_written)
+
+
+def _run(args: argparse.Namespace, until_written: ExitStack) -> int:
     from skinfab.files import require_apart
     from skinfab.fingertip.nail.model_file import load_nail
 
@@ -77,7 +83,7 @@ def run(args: argparse.Namespace) -> int:
         args.every = getattr(content.model, "samples", _EVERY)
     names = list(content.model.names)
     if args.port:
-        told, facts = _from_port(args, content)
+        told, facts = _from_port(args, content, until_written)
     else:
         told, facts = _from_log(args, content)
     from skinfab.errors import InputError, RefusedError
@@ -143,7 +149,7 @@ def _from_log(args: argparse.Namespace, content: Any) -> tuple[list[Told], dict[
     return told, facts
 
 
-def _from_port(args: argparse.Namespace, content: Any) -> tuple[list[Told], dict[str, Any]]:
+def _from_port(args: argparse.Namespace, content: Any, until_written: ExitStack) -> tuple[list[Told], dict[str, Any]]:
     from skinfab.cli.nail_port import watch_port
 
     return watch_port(
@@ -157,6 +163,7 @@ def _from_port(args: argparse.Namespace, content: Any) -> tuple[list[Told], dict
         rate_hz=args.rate,
         units_said=content.made_from.get("units_said"),
         quiet=args.json,
+        until_written=until_written,
     )
 
 

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from interrupts import pressed_twice
 
 from skinfab.bench import array as bench
 from skinfab.cli.main import build_parser, main
@@ -20,6 +21,7 @@ from skinfab.fingertip.array.geometry import Geometry
 from skinfab.fingertip.array.learn import load_array
 from skinfab.fingertip.array.protocols import presses, twirl
 from skinfab.fingertip.array.simulator import Device
+from skinfab.fingertip.array.watch import ArrayWatch
 from skinfab.readout.frame import Recording
 from skinfab.readout.logs.log import read_log, write_log
 from skinfab.readout.pty_server import PtyServer
@@ -234,3 +236,16 @@ def test_a_log_is_not_written_over(made: Path, tmp_path: Path, capsys: pytest.Ca
     write_log(Recording.of_frames(recording.stream, list(recording)), tmp_path / "frames.csv")
     assert main(["array", "run", str(tmp_path / "frames.csv"), "-o", str(tmp_path)]) == 1
     assert "would be replaced" in capsys.readouterr().err
+
+
+def test_a_second_ctrl_c_loses_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    recording, _ = twirl(Device(seed=4), seed=4001)
+    with (
+        PtyServer(recording.stream, recording, rate_hz=0) as device,
+        pressed_twice(ArrayWatch, "skinfab.fingertip.array.figure.draw_run", after=60),
+    ):
+        assert main(["array", "run", "--port", str(device.path), "--seconds", "60", "-o", str(tmp_path), "--json"]) == 0
+    result = json.loads(capsys.readouterr().out)
+    assert json.loads((tmp_path / "result.json").read_text()) == result
+    assert sorted(each.name for each in tmp_path.iterdir()) == ["array.png", "events.csv", "frames.csv", "result.json"]
+    assert len((tmp_path / "frames.csv").read_text().splitlines()) == 1 + result["frames"] > 20

@@ -2,13 +2,17 @@
 
 import csv
 import json
+import os
 import re
-from collections.abc import Callable
+import signal
+import time as clock
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from interrupts import pressed_twice
 
 from calibration.contact.detector import ContactDetector, Detection, detect
 from calibration.contact.objects import OBJECTS
@@ -18,7 +22,7 @@ from skinfab.cli.contact import Trial
 from skinfab.cli.contact_files import write_files
 from skinfab.cli.contact_port import Told
 from skinfab.cli.main import main
-from skinfab.readout.frame import Channel, Recording, Stream
+from skinfab.readout.frame import Channel, Frame, Recording, Stream
 from skinfab.readout.logs.log import read_log, write_log
 from skinfab.readout.pty_server import PtyServer
 
@@ -283,3 +287,35 @@ def test_a_port_without_a_frame_in_time_is_an_error(tmp_path: Path, capsys: pyte
     with PtyServer(log.stream, (log.frame(k) for k in range(300)), rate_hz=300) as server:
         assert main(["contact", str(server.path), "--seconds", "1e-9", "-o", str(tmp_path / "out")]) == 1
     assert "sent no frame" in capsys.readouterr().err and not (tmp_path / "out").exists()
+
+
+def test_a_second_ctrl_c_loses_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    log, out = simulate("grip", seed=2).recording, tmp_path / "out"
+    with (
+        PtyServer(log.stream, (log.frame(k) for k in range(700)), rate_hz=0) as server,
+        pressed_twice(ContactDetector, "calibration.contact.figure.draw_contacts", after=600),
+    ):
+        assert main(["contact", str(server.path), "--seconds", "60", "-o", str(out), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out) == json.loads((out / "result.json").read_text())
+    assert sorted(each.name for each in out.iterdir()) == FILES and rows(out / "events.csv")[0]["channel"] == "S1"
+
+
+def test_ctrl_c_while_frames_are_counted_ends_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Too few have come to be watched; so it says, as where the time was too short."""
+    log = simulate("grip", seed=2).recording
+
+    def sent() -> Iterator[Frame]:
+        yield from (log.frame(k) for k in range(5))
+        clock.sleep(0.1)
+        os.kill(os.getpid(), signal.SIGINT)
+        clock.sleep(0.05)
+        os.kill(os.getpid(), signal.SIGINT)
+        yield log.frame(5)
+
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        with PtyServer(log.stream, sent(), rate_hz=0, ascii_lines=True) as server:
+            assert main(["contact", str(server.path), "--seconds", "60", "-o", str(tmp_path / "out")]) == 1
+    finally:
+        signal.signal(signal.SIGINT, before)
+    assert "too few to count how many come a second" in capsys.readouterr().err and not (tmp_path / "out").exists()

@@ -7,8 +7,15 @@ from typing import Any
 
 import numpy as np
 import pytest
+from interrupts import pressed_twice
 
 from skinfab.cli.main import main
+from skinfab.fingertip.force.motion import MotionWatch
+from skinfab.fingertip.force.motion_simulator import grasp_log
+from skinfab.fingertip.force.wrench import force_stream
+from skinfab.readout.frame import Recording
+from skinfab.readout.packets import FRAME_64
+from skinfab.readout.pty_server import PtyServer
 
 
 def said(capsys: pytest.CaptureFixture[str], *arguments: object) -> dict[str, Any]:
@@ -127,3 +134,17 @@ def test_moments_in_newton_metres_are_refused(grasps: Path, tmp_path: Path, caps
     log = altered(grasps / "grasp-40.csv", tmp_path / "metres.csv", slice(4, 7), 0.001)
     assert main(["force", "run", "contact", str(log), "-o", str(tmp_path / "out")]) == 1
     assert "the moments are in N m" in capsys.readouterr().err and not (tmp_path / "out").exists()
+
+
+def test_a_second_ctrl_c_loses_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    log, _ = grasp_log(seed=3, episodes=1)
+    values = np.column_stack([log.force, log.moment])
+    made = Recording.of_values(force_stream("fingertip", 200.0, simulated=True), values, device_time=np.arange(len(log)) / 200)
+    with (
+        PtyServer(made.stream, made, rate_hz=0, kind=FRAME_64) as device,
+        pressed_twice(MotionWatch, "skinfab.fingertip.force.motion_figure.draw_motions", after=400),
+    ):
+        result = said(capsys, "run", "contact", "--port", device.path, "--seconds", 60, "-o", tmp_path)
+    assert json.loads((tmp_path / "result.json").read_text()) == result
+    assert sorted(each.name for each in tmp_path.iterdir()) == ["contact.png", "contacts.csv", "events.csv", "result.json"]
+    assert len((tmp_path / "contacts.csv").read_text().splitlines()) == 1 + 400

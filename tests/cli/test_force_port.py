@@ -1,12 +1,14 @@
 """What a port sends is watched as a log is: the same motions, and each decision within the sample's own time."""
 
 import time
+from contextlib import ExitStack
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 
-from skinfab.cli.force_port import watch_port
+from skinfab.cli.force_port import Watched, watch_port
 from skinfab.errors import InputError
 from skinfab.fingertip.force.motion import Limits, Motion, MotionWatch, find_motions
 from skinfab.fingertip.force.motion_simulator import grasp_log
@@ -26,10 +28,15 @@ def recording(seconds: float = 12.0) -> Recording:
     return Recording.of_values(force_stream("fingertip", 200.0, simulated=True), values, device_time=np.arange(n) / 200)
 
 
+def watching(device: PtyServer, **options: Any) -> Watched:
+    with ExitStack() as until_written:
+        return watch_port(str(device.path), limits=LIMITS, until_written=until_written, **options)
+
+
 def test_a_port_and_a_log_give_the_same_motions(capsys: pytest.CaptureFixture[str]) -> None:
     made = recording()
     with PtyServer(made.stream, made, rate_hz=0, kind=FRAME_64) as device:
-        watched = watch_port(str(device.path), limits=LIMITS, seconds=4)
+        watched = watching(device, seconds=4)
     n = len(watched.log)
     assert n == len(made) and watched.simulated and watched.log.simulated
     found = find_motions(made.device_time, made.values[:, :3], made.values[:, 3:], MotionWatch(LIMITS, rate_hz=200))
@@ -41,7 +48,7 @@ def test_a_port_and_a_log_give_the_same_motions(capsys: pytest.CaptureFixture[st
 def test_latency_is_of_every_sample_and_less_than_its_time() -> None:
     made = recording(1.0)
     with PtyServer(made.stream, made) as device:
-        watched = watch_port(str(device.path), limits=LIMITS, seconds=2, quiet=True)
+        watched = watching(device, seconds=2, quiet=True)
     assert 0 < len(watched.latency_s) <= len(watched.log) == 200 and (watched.latency_s > 0).all()
     assert 0 < watched.latency["median_ms"] <= watched.latency["p99_ms"] <= watched.latency["worst_ms"]
 
@@ -56,7 +63,7 @@ def test_what_gathered_before_it_was_read_is_no_latency(monkeypatch: pytest.Monk
 
     monkeypatch.setattr(MotionWatch, "__init__", slow)
     with PtyServer(made.stream, made) as device:
-        watched = watch_port(str(device.path), limits=LIMITS, seconds=2, quiet=True)
+        watched = watching(device, seconds=2, quiet=True)
     assert len(watched.log) == 400 and 0 < len(watched.latency_s) < 300
     assert watched.latency["median_ms"] < 300  # those that waited did so for up to 700 ms
 
@@ -71,7 +78,7 @@ def test_decisions_that_fall_behind_are_told_at_the_end(monkeypatch: pytest.Monk
 
     monkeypatch.setattr(MotionWatch, "step", slow)
     with PtyServer(made.stream, made) as device:
-        watched = watch_port(str(device.path), limits=LIMITS, seconds=1.5, quiet=True)
+        watched = watching(device, seconds=1.5, quiet=True)
     (said,) = watched.notes
     assert said.startswith("at the end decisions were ") and "was not read: this computer is too busy" in said
 
@@ -80,7 +87,7 @@ def test_units_of_the_stream_are_converted() -> None:
     made = recording(0.5)
     channels = tuple(replace(each, unit="N m") if each.name[0] == "M" else each for each in made.stream.channels)
     with PtyServer(replace(made.stream, channels=channels), made, rate_hz=0, kind=FRAME_64) as device:
-        watched = watch_port(str(device.path), limits=LIMITS, seconds=1, quiet=True)
+        watched = watching(device, seconds=1, quiet=True)
     assert watched.log.moment == pytest.approx(1000 * made.values[:, 3:])
 
 
@@ -88,7 +95,7 @@ def test_a_sample_without_a_component_is_passed_over_and_counted() -> None:
     made = recording(0.5)
     made.valid[10:13, 4] = False
     with PtyServer(made.stream, made, rate_hz=0) as device:
-        watched = watch_port(str(device.path), limits=LIMITS, seconds=1, quiet=True)
+        watched = watching(device, seconds=1, quiet=True)
     assert len(watched.log) == 97 and "3 samples lacked a component" in watched.notes[0]
 
 
@@ -103,21 +110,21 @@ def test_a_port_of_something_else_is_refused(stream: Stream, says: str) -> None:
     values = np.ones((20, len(stream.channels)))
     made = Recording.of_values(stream, values, device_time=np.arange(20) / 100)
     with PtyServer(stream, made, rate_hz=100) as device, pytest.raises(InputError, match=says):
-        watch_port(str(device.path), limits=LIMITS, seconds=1)
+        watching(device, seconds=1)
 
 
 def test_a_silent_port_is_told() -> None:
     made = recording(0.1)
     made.valid[:] = False
     with PtyServer(made.stream, made) as device, pytest.raises(InputError, match="no whole sample"):
-        watch_port(str(device.path), limits=LIMITS, seconds=0.5)
+        watching(device, seconds=0.5)
 
 
 def test_an_offset_is_taken_off_after_a_rest() -> None:
     made = recording(3.0)
     log, _ = grasp_log(seed=3, episodes=4)
     with PtyServer(made.stream, made, rate_hz=0, kind=FRAME_64) as device:
-        watched = watch_port(str(device.path), limits=LIMITS, seconds=2, tare=0.5, quiet=True)
+        watched = watching(device, seconds=2, tare=0.5, quiet=True)
     offset = log.force[:100].mean(axis=0)
     assert len(watched.log) == 500 and np.abs(offset).max() > 0.01
     assert watched.log.force == pytest.approx(made.values[100:, :3] - offset)
@@ -126,7 +133,7 @@ def test_an_offset_is_taken_off_after_a_rest() -> None:
 def test_a_touch_while_it_is_to_rest_is_refused() -> None:
     made = recording(3.0)
     with PtyServer(made.stream, made, rate_hz=0) as device, pytest.raises(InputError, match="something touches"):
-        watch_port(str(device.path), limits=LIMITS, seconds=2, tare=2.0, quiet=True)
+        watching(device, seconds=2, tare=2.0, quiet=True)
 
 
 def test_moments_in_n_m_whose_unit_no_device_names_are_refused() -> None:
@@ -137,12 +144,12 @@ def test_moments_in_n_m_whose_unit_no_device_names_are_refused() -> None:
         PtyServer(replace(made.stream, channels=channels), replace(made, values=values), rate_hz=0, kind=FRAME_64) as device,
         pytest.raises(InputError, match="so the moments are in N m"),
     ):
-        watch_port(str(device.path), limits=LIMITS, seconds=2, quiet=True)
+        watching(device, seconds=2, quiet=True)
 
 
 def test_a_model_straightens_what_a_port_sends() -> None:
     made = recording(1.0)
     twice = TouchModel(2 * np.eye(6), SensorNoise(), "a dome of 20 mm", np.zeros((36, 36)))
     with PtyServer(made.stream, made, rate_hz=0, kind=FRAME_64) as device:
-        watched = watch_port(str(device.path), limits=LIMITS, seconds=1, model=twice, quiet=True)
+        watched = watching(device, seconds=1, model=twice, quiet=True)
     assert watched.log.moment == pytest.approx(2 * made.values[:, 3:])

@@ -13,12 +13,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from interrupts import pressed_twice
 
 from skinfab.cli.main import main
 from skinfab.cli.nail_judged import judged
 from skinfab.cli.nail_port import _Speaker
 from skinfab.cli.nail_run import _facts
-from skinfab.fingertip.nail.live import Told, decide_log
+from skinfab.fingertip.nail.live import NailWatch, Told, decide_log
 from skinfab.fingertip.nail.model_file import load_nail
 from skinfab.fingertip.nail.pace import pace_of_log
 from skinfab.fingertip.nail.patterns import TESTS
@@ -390,3 +391,17 @@ def test_what_is_said_of_a_run(model: Path, deciding: float, says: str) -> None:
     assert any(says in note and "0.9 s behind in the median" in note for note in notes)
     assert "channel Gy had too few readings or stood still, in 100.0% of the windows, decided without it" in notes
     assert "the force is at the high end of those that were learned in 100% of the windows: it may be more" in notes
+
+
+def test_a_second_ctrl_c_loses_nothing(model: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    capsys.readouterr()
+    frames = list(itertools.islice(nail_frames(participant(np.random.default_rng([0, 1])), [None], hold_s=0.4), 560))
+    with (
+        PtyServer(nail_stream(), frames, rate_hz=1400) as device,
+        pressed_twice(NailWatch, "skinfab.fingertip.nail.figure.draw_run", after=200),
+    ):
+        assert main(["nail", "run", str(model), "--port", str(device.path), "--seconds", "60", "-o", str(tmp_path / "o"), "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert json.loads((tmp_path / "o/result.json").read_text()) == found and found["frames"] == 200
+    assert sorted(each.name for each in (tmp_path / "o").iterdir()) == FILES
+    assert len((tmp_path / "o/decisions.csv").read_text().splitlines()) == 2 + found["windows"] > 15
