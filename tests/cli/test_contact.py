@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from interrupts import pressed_twice
+from interrupts import pressed, pressed_twice
 
 from calibration.contact.detector import ContactDetector, Detection, detect
 from calibration.contact.objects import OBJECTS
@@ -173,8 +173,8 @@ def test_a_port_is_watched_and_told_as_it_comes(tmp_path: Path, capsys: pytest.C
     log = simulate("grip", seed=2).recording
     short = [log.frame(k) for k in range(900)]
     out = tmp_path / "out"
-    with PtyServer(log.stream, short, rate_hz=600) as server:
-        assert main(["contact", str(server.path), "--seconds", "3", "-o", str(out)]) == 0
+    with PtyServer(log.stream, short, rate_hz=0) as server, pressed(ContactDetector, after=900):
+        assert main(["contact", str(server.path), "--seconds", "60", "-o", str(out)]) == 0
     said = capsys.readouterr()
     assert "contact: 4." in said.err and "S1 touched, +" in said.err and "S1 let go after" in said.err
     assert "grip (simulated):" in said.out and sorted(each.name for each in out.iterdir()) == FILES
@@ -186,8 +186,9 @@ def test_a_port_is_watched_and_told_as_it_comes(tmp_path: Path, capsys: pytest.C
 
 def test_lines_that_do_not_say_their_rate_are_counted(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     log = simulate("grip", seed=2).recording
-    with PtyServer(log.stream, (log.frame(k) for k in range(700)), rate_hz=200, ascii_lines=True) as server:
-        assert main(["contact", str(server.path), "--seconds", "3.5", "-o", str(tmp_path / "out")]) == 0
+    frames = (log.frame(k) for k in range(700))
+    with PtyServer(log.stream, frames, rate_hz=0, ascii_lines=True) as server, pressed(ContactDetector, after=700):
+        assert main(["contact", str(server.path), "--seconds", "60", "-o", str(tmp_path / "out")]) == 0
     said = capsys.readouterr()
     counted = float(re.search(r"does not say how many frames come a second; ([0-9.]+) were counted", said.err)[1])  # type: ignore[index]
     # The lines bring the device's own clock, which says 100 Hz, however fast they are sent here.
