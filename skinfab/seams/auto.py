@@ -14,7 +14,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from skinfab.errors import RefusedError
+from skinfab.errors import InputError, RefusedError
 from skinfab.mesh.model import Mesh
 from skinfab.seams.coarse import coarsen, transfer
 from skinfab.seams.creases import crease_seams, without_scraps
@@ -22,6 +22,7 @@ from skinfab.seams.cut import open_pieces, seam_length
 from skinfab.seams.fewest import fewest_seams
 from skinfab.seams.glue import glue_pieces
 from skinfab.seams.judge import Limits
+from skinfab.seams.naming import named_edges
 from skinfab.seams.refine import Judged, refine_seams
 from skinfab.seams.rules import EdgeRules, coarse_rules
 from skinfab.seams.simplest import simplest_seams
@@ -104,7 +105,17 @@ def find_seams(
     -------
     Seams
         Flattened as far as it takes to accept them; `finish.finish` drives d to its least.
+
+    Raises
+    ------
+    InputError
+        An edge is both locked and forbidden, or the mesh is not manifold or not consistently wound.
+    RefusedError
+        No seams give good pieces, or the rules forbid them.
     """
+    if rules is not None and (rules.locked & rules.forbidden).any():
+        names = named_edges(mesh, np.flatnonzero(rules.locked & rules.forbidden))
+        raise InputError(f"{names}: locked, which stays a seam, and forbidden, which is never cut; unlock it or allow it")
     report = progress or (lambda done: None)
     parts = len(open_pieces(mesh, np.zeros(len(mesh.topology.E), dtype=bool) if rules is None else rules.locked))
     if aim == "simplest":

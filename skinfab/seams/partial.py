@@ -17,6 +17,7 @@ from skinfab.placement.sensor import Sensor
 from skinfab.progress import Progress, silent
 from skinfab.seams.auto import Aim, find_seams
 from skinfab.seams.cut import OpenPiece, open_pieces
+from skinfab.seams.enclosed import enclosed_text
 from skinfab.seams.finish import finish
 from skinfab.seams.judge import Limits
 from skinfab.seams.lenient import LaidFlat, kept_flat, lay_flat, require_method
@@ -169,10 +170,15 @@ def auto_cut(
         See `find_seams`.
     progress : Progress, optional
 
+    Returns
+    -------
+    Reopened
+        Faults are about sensors, and pieces that locked seams part off though they are too small to handle.
+
     Raises
     ------
     InputError, RefusedError
-        No seams give good pieces, or the marks forbid them.
+        No seams give good pieces, or the marks forbid them or contradict each other.
     """
     mesh = skin.mesh
     rules = None if skin.marks is None or skin.marks.empty else edge_rules(mesh, skin.marks)
@@ -181,8 +187,10 @@ def auto_cut(
     pieces = to_pieces(mesh, found.pieces)
     by_first_face = {int(piece.faces[0]): verdict.distortion for piece, verdict in found.pieces}
     new = replace(skin, seams=mesh.topology.E[found.cut & ~mesh.topology.is_boundary], pieces=pieces, max_distortion=limits.mean)
+    small = [] if rules is None else enclosed_text(mesh, pieces, rules.locked, neck)
+    faults = [Fault(text, piece.faces, piece.id) for text, piece in small]
     progress(1.0, "cutting and flattening")
-    return _with_sensors(new, skin, [], [by_first_face[int(piece.faces[0])] for piece in pieces], material=material)
+    return _with_sensors(new, skin, faults, [by_first_face[int(piece.faces[0])] for piece in pieces], material=material)
 
 
 def _with_sensors(

@@ -6,6 +6,7 @@ import os
 import signal
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +15,7 @@ import pytest
 from skinfab.cli.main import main
 from skinfab.document import load_skin, save_skin
 from skinfab.seams.edit import forbid, lock
+from skinfab.skin import SeamMarks
 
 ROOT = Path(__file__).parents[2]
 CUBE = str(ROOT / "meshes/cube.obj")
@@ -171,6 +173,18 @@ def test_marks_that_forbid_everything_are_refused(tmp_path: Path, capsys: pytest
     save_skin(forbid(skin, np.arange(len(skin.mesh.topology.E))), tmp_path / "a.skin")
     assert main(["segment", str(tmp_path / "a.skin"), "-o", str(tmp_path / "b.skin")]) == 3
     assert "the forbidden edges leave no seam" in capsys.readouterr().err and not (tmp_path / "b.skin").exists()
+
+
+def test_marks_that_contradict_each_other_are_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """No edit makes such a document, but a script of one's own may."""
+    assert main(["segment", CUBE, "-o", str(tmp_path / "a.skin")]) == 0
+    skin = load_skin(tmp_path / "a.skin")
+    save_skin(
+        replace(skin, marks=SeamMarks(skin.seams[:1], skin.seams[:1], np.zeros(len(skin.mesh.F), dtype=np.int8))), tmp_path / "a.skin"
+    )
+    assert main(["segment", str(tmp_path / "a.skin"), "-o", str(tmp_path / "b.skin")]) == 1
+    a, b = sorted(skin.seams[0].tolist())
+    assert f"{a}-{b}: locked" in capsys.readouterr().err and not (tmp_path / "b.skin").exists()
 
 
 def test_simplest_pieces(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
