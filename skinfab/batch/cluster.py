@@ -65,6 +65,7 @@ def connected(*, folder: Path, scheduler: str | None, workers: int) -> Iterator[
         No scheduler answers, it has no workers, or they do not see `folder` and its lock, or have another skinfab.
     """
     import dask
+    import distributed  # noqa: F401  (it sets the levels of its loggers when it is imported: first)
 
     config = {"distributed.comm.timeouts.connect": f"{CONNECT_S:g}s", "distributed.scheduler.allowed-failures": _NEVER}
     with _silent_logs(), dask.config.set(config), _local(workers) if scheduler is None else _remote(scheduler, folder) as client:

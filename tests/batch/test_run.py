@@ -91,22 +91,31 @@ CLIENT = """
 import sys
 from pathlib import Path
 from batches import RUNNER, quick_job, quick_jobs
+from skinfab.batch import cluster
 from skinfab.batch.run import run_batch
-folder, scheduler, *texts = sys.argv[1:]
-run_batch(quick_jobs(Path(folder), texts), Path(folder) / "out", workers=0, scheduler=scheduler, runner=RUNNER)
+from skinfab.errors import InputError
+folder, scheduler, cluster.CONNECT_S, *texts = sys.argv[1], sys.argv[2], float(sys.argv[3]), *sys.argv[4:]
+try:
+    run_batch(quick_jobs(Path(folder), texts), Path(folder) / "out", workers=0, scheduler=scheduler, runner=RUNNER)
+except InputError as fault:
+    sys.exit(str(fault))
 """
+
+
+def client_of(folder: Path, scheduler: str, texts: list[str], connect_s: float = 20.0) -> subprocess.Popen[str]:
+    program = [sys.executable, "-c", CLIENT, str(folder), scheduler, str(connect_s), *texts]
+    return subprocess.Popen(program, env={**os.environ, "PYTHONPATH": str(Path(__file__).parents[1])}, stderr=subprocess.PIPE, text=True)
 
 
 def test_a_killed_client_is_resumed_and_what_its_workers_still_do_is_waited_for(tmp_path: Path, scheduler: str) -> None:
     out, texts = tmp_path / "out", ["make 1", "make 2", "make 3", "sleep 2", "failed"]
     jobs = quick_jobs(tmp_path, texts)
-    program = [sys.executable, "-c", CLIENT, str(tmp_path), scheduler, *texts[:4]]
-    client = subprocess.Popen(program, env={**os.environ, "PYTHONPATH": str(Path(__file__).parents[1])})
+    client = client_of(tmp_path, scheduler, texts[:4])
     wait_for(lambda: attempts(out, jobs[3]))
     with pytest.raises(InputError, match="another batch is at work in"):
         run(jobs, out, scheduler)
     client.kill()
-    client.wait()
+    client.communicate()
     before = sum((out / "jobs" / job.name / "job.json").exists() for job in jobs)
     (out / "jobs.jsonl").write_text((out / "jobs.jsonl").read_text() + '{"job": "torn')
     outcome = run(jobs, out, scheduler)
@@ -117,36 +126,26 @@ def test_a_killed_client_is_resumed_and_what_its_workers_still_do_is_waited_for(
     assert again.before == 5 and again.records == outcome.records
 
 
-def test_a_scheduler_that_dies_is_told_and_another_goes_on(tmp_path: Path, scheduler: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A scheduler and a worker as they are started by hand."""
-    monkeypatch.setattr(cluster, "CONNECT_S", 2.0)
-    (tmp_path / "meshes").mkdir()
-    jobs, file = quick_jobs(tmp_path / "meshes", ["make", "sleep-once"]), tmp_path / "scheduler.json"
+def test_a_scheduler_that_dies_is_told_and_another_goes_on(tmp_path: Path, scheduler: str) -> None:
+    """A scheduler and a worker as they are started by hand, and a client that has not imported Dask before: it says one sentence."""
+    texts, file = ["make", "sleep-once"], tmp_path / "scheduler.json"
+    jobs = quick_jobs(tmp_path, texts)
     dask, quiet = [str(Path(sys.executable).with_name("dask"))], {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
     options = ["--scheduler-file", str(file), "--no-dashboard"]
     served = subprocess.Popen([*dask, "scheduler", "--host", "127.0.0.1", "--port", "0", *options], **quiet)  # type: ignore[call-overload]
     works = subprocess.Popen([*dask, "worker", "--no-nanny", "--local-directory", str(tmp_path), *options], **quiet)  # type: ignore[call-overload]
     try:
         wait_for(lambda: file.exists() and file.read_text().endswith("}"))
-        told: list[BaseException] = []
-
-        def work() -> None:
-            try:
-                run(jobs, tmp_path / "out", json.loads(file.read_text())["address"])
-            except InputError as fault:
-                told.append(fault)
-
-        thread = threading.Thread(target=work, daemon=True)
-        thread.start()
-        wait_for((tmp_path / "meshes/sleep-once.begun").exists)
+        client = client_of(tmp_path, json.loads(file.read_text())["address"], texts, connect_s=2.0)
+        wait_for((tmp_path / "sleep-once.begun").exists)
         wait_for((tmp_path / "out/jobs" / jobs[0].name).exists)
         served.kill()
-        thread.join(timeout=60)
+        _, told = client.communicate(timeout=60)
     finally:
         for process in (served, works):
             process.kill()
             process.wait()
-    assert "the Dask scheduler went away; start it and run the same command again" in str(told[0])
+    assert told == f"{cluster.GONE}\n" and client.returncode == 1
     outcome = run(jobs, tmp_path / "out", scheduler)
     assert ends(outcome.records) == {"made": 2} and [r["attempts"] for r in outcome.records.values()] == [1, 2]
 
