@@ -126,6 +126,50 @@ def part_sheets(V: Points, F: IntArray) -> Mended:
     return np.vstack([V, V[source[again]]]), number[fan], said
 
 
+def split_touching(V: Points, F: IntArray) -> Mended:
+    """Give sheets that touch along an edge, and hang together at both of its ends, a point of their own in its middle.
+
+    No doubled vertex parts these, as around either end all faces are one fan: a surface folded onto itself at a single edge, as
+    decimation leaves them.
+    """
+    split: list[str] = []
+    F = F.copy()
+    while True:
+        top = Topology(F)
+        balanced = top.is_nonmanifold & ~unbalanced_edges(top, np.zeros(len(F), dtype=bool))
+        pairs = _enclosing_pairs(V, top, balanced) if balanced.any() else np.empty((0, 2), dtype=np.int64)
+        chosen: list[tuple[int, list[int]]] = []
+        busy: set[int] = set()
+        edges: set[int] = set()
+        for pair in pairs.tolist():
+            faces = {side // 3 for side in pair}
+            edge = int(top.FE.ravel()[pair[0]])
+            apexes = {int(F[side // 3, (side % 3 + 2) % 3]) for side in pair}
+            # One pair of an edge at a time, so that the last one keeps it; a flap of no thickness would only be split on and on.
+            if edge not in edges and not faces & busy and len(apexes) == 2:
+                chosen.append((edge, pair))
+                busy |= faces
+                edges.add(edge)
+        if not chosen:
+            break
+        more = []
+        for edge, pair in chosen:
+            u, w = top.E[edge].tolist()
+            split.append(f"{u}-{w}")
+            middle = len(V)
+            V = np.vstack([V, (V[u] + V[w]) / 2])
+            for side in pair:
+                a, b, c = np.roll(F[side // 3], -(side % 3)).tolist()
+                F[side // 3] = a, middle, c
+                more.append((middle, b, c))
+        F = np.vstack([F, more])
+    if not split:
+        return V, F, ""
+    V, F, turned = wind_consistently(V, F)  # only now parts may be closed, and face inward
+    said = f"split {_several(len(split), 'edge')} at which sheets touch that hang together at both ends (first: edge {split[0]})"
+    return V, F, said + (f"; {turned}" if turned else "")
+
+
 def _enclosing_pairs(V: Points, top: Topology, balanced: NDArray[np.bool_]) -> IntArray:
     """Sides (face * 3 + side) that belong together at each edge of four faces or more, (k, 2)."""
     flat_edge = top.FE.ravel()

@@ -6,7 +6,7 @@ import numpy as np
 
 from skinfab.errors import InputError
 from skinfab.mesh import cleaning
-from skinfab.mesh.fans import unbalanced_edges, winding
+from skinfab.mesh.fans import winding
 from skinfab.mesh.inspect import inspect
 from skinfab.mesh.model import Mesh
 from skinfab.tolerances import REPAIR_HOLE_EDGES, REPAIR_SPECK
@@ -19,6 +19,7 @@ _PASSES = (
     cleaning.merge_flat,
     cleaning.wind_consistently,
     cleaning.part_sheets,
+    cleaning.split_touching,
     cleaning.drop_unreferenced,
 )
 
@@ -28,7 +29,7 @@ def clean(mesh: Mesh) -> tuple[Mesh, list[str]]:
 
     Degenerate and duplicate faces and unreferenced vertices are dropped, cracks between coincident
     vertices closed, faces without area merged into their neighbours, winding made consistent
-    and outward, and vertices doubled where sheets only touch. An intact mesh comes back as it is.
+    and outward, and vertices doubled, or edges split, where sheets only touch. An intact mesh comes back as it is.
 
     Parameters
     ----------
@@ -120,7 +121,10 @@ def require_usable(mesh: Mesh) -> None:
         if fault.mended_by == "no":
             raise InputError(f"{mesh.name}: {_counted(fault.count, fault.kind)} (first: {fault.first}); {fault.remedy}")
     top = mesh.topology
-    if unbalanced_edges(top, np.zeros(len(mesh.F), dtype=bool)).any() or winding(top).turn.any() or top.is_nonmanifold.any():
+    if (crowded := np.flatnonzero(top.is_nonmanifold)).size:
+        first = "-".join(map(str, top.E[crowded[0]].tolist()))
+        raise InputError(f"{mesh.name} has {len(crowded)} edges of more than two faces (first: edge {first}); run again with --repair")
+    if winding(top).turn.any():
         raise InputError(f"{mesh.name} is not wound consistently; clean it first")
 
 

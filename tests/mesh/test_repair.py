@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from skinfab.errors import InputError
+from skinfab.mesh.decimate import decimate
 from skinfab.mesh.door import load_usable
 from skinfab.mesh.inspect import inspect
 from skinfab.mesh.io import load_mesh
@@ -104,3 +105,49 @@ def test_what_cannot_be_mended_is_refused(bad: str) -> None:
     mesh = made("moebius") if bad == "moebius" else Mesh(np.zeros((3, 3)), np.array([[0, 1, 2]]), "nothing")
     with pytest.raises(InputError, match=rf"^{bad}: .*(one-sided|no area)"):
         require_usable(repair(mesh)[0])
+
+
+def waisted() -> Mesh:
+    """A triangular column of three rings whose middle one is pressed to an edge, 3-4: two solids that touch there."""
+    ring = np.array([[0.0, 0], [20, 0], [0, 20]])
+    V = np.vstack([np.column_stack([ring, np.full(3, z)]) for z in (0.0, 10.0, 20.0)])
+    F = [[0, 2, 1], [6, 7, 8]]
+    for low in (0, 3):
+        for k in range(3):
+            a, b = low + k, low + (k + 1) % 3
+            F += [[a, b, b + 3], [a, b + 3, a + 3]]
+    pressed = np.array(F)
+    pressed[pressed == 5] = 4
+    return Mesh(V, pressed[(np.diff(np.sort(pressed, axis=1), axis=1) > 0).all(axis=1)])
+
+
+def test_sheets_that_touch_along_an_edge_and_hang_together_at_both_ends_get_a_point_each() -> None:
+    """Turned inside out the faces that enclose what lies between go on round both ends of the edge: no doubled vertex parts them."""
+    solid = waisted()
+    assert solid.topology.edge_count.max() == 4
+    parted, done = clean(solid)
+    assert inspect(parted.V, parted.F).components == 2 and done[0].startswith("doubled 2 vertices")
+    hollow = Mesh(solid.V, np.ascontiguousarray(solid.F[:, ::-1]))
+    cleaned, done = clean(hollow)
+    assert done[0] == (
+        "split 1 edge at which sheets touch that hang together at both ends (first: edge 3-4); turned over 14 faces of closed parts that "
+        "faced inward"
+    )
+    require_usable(cleaned)
+    found = inspect(cleaned.V, cleaned.F)
+    assert (found.components, found.genus, found.closed) == (1, (0,), True)
+    assert cleaned.area == pytest.approx(solid.area, rel=1e-12) and len(hollow.F) == len(solid.F)
+    assert clean(cleaned)[1] == []
+
+
+@pytest.mark.skipif(not REAL.exists(), reason="the real meshes (../shared/meshes) are not here")
+def test_a_mesh_that_decimation_folded_is_usable() -> None:
+    mesh = load_usable(REAL / "leap_fingertip.obj").mesh
+    few = decimate(mesh.V, mesh.F, faces=len(mesh.F) // 8)
+    folded = Mesh(few.V, few.F)
+    assert folded.topology.is_nonmanifold.any()
+    cleaned, done = clean(folded)
+    require_usable(cleaned)
+    assert any("hang together at both ends" in each for each in done)
+    flaps = folded.area - cleaned.area  # pairs of faces back to back, which enclose nothing
+    assert 0 <= flaps < 0.01 * folded.area
