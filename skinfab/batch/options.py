@@ -16,6 +16,9 @@ _OWN = ("help", "output", "json")
 #: Options whose value is a file, or may be one where it ends in .toml.
 _FILES = ("sensors", "cuts", "printer", "material")
 
+#: Options that name a profile.
+_PROFILES = ("printer", "material")
+
 
 class Options:
     """What may be set, and whether a value will do.
@@ -71,6 +74,18 @@ class Options:
     def is_file(self, name: str, value: Value) -> bool:
         """Whether the value is a file that is to be read."""
         return name in _FILES and (name in ("sensors", "cuts") or str(value).endswith(".toml"))
+
+    def require_known(self, name: str, value: Value) -> None:
+        """Refuse a printer or material that no profile describes.
+
+        Raises
+        ------
+        InputError
+        """
+        from skinfab.cli import steps
+
+        if name in _PROFILES:
+            steps.profiles(**{name: str(value)})
 
     def require_fitting(self, mesh: str | Path, settings: Mapping[str, Value]) -> None:
         """Refuse settings that do not go together, or not with such a mesh.

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import difflib
+import fnmatch
 import itertools
+import os
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NoReturn
@@ -138,7 +141,7 @@ class _Reader:
         for pattern in patterns:
             try:
                 matches = sorted(self._matches(pattern))
-            except (ValueError, NotImplementedError, OSError) as fault:
+            except ValueError as fault:
                 self._refuse("", "meshes", f"{pattern!r} is no pattern of files: {fault}")
             if not matches:
                 self._refuse("", "meshes", f"{pattern!r} matches no file in {self._folder} (results in {self._output} do not count)")
@@ -146,10 +149,8 @@ class _Reader:
         return list(found)
 
     def _matches(self, pattern: str) -> Iterable[Path]:
-        anchor = Path(pattern).anchor
-        start = Path(anchor) if anchor else self._folder
-        for path in start.glob(pattern.removeprefix(anchor)):
-            if path.is_file() and self._output not in path.resolve().parents:
+        for path in matching(self._folder, Path(pattern).parts):
+            if os.path.isfile(path) and self._output not in path.resolve().parents:
                 yield path
 
     def _settings(self, table: dict[str, Any]) -> dict[str, list[Value]]:
@@ -165,14 +166,14 @@ class _Reader:
     def _value(self, key: str, given: Any) -> Value:
         try:
             value = self._options.value(key, given)
+            if self._options.is_file(key, value):
+                value = str(self._folder / str(value))
+                if not Path(value).is_file():
+                    raise InputError(f"there is no file {value}; paths count from the folder of {self._path.name}")
+            self._options.require_known(key, value)
         except InputError as fault:
             self._refuse("settings", key, str(fault))
-        if not self._options.is_file(key, value):
-            return value
-        file = self._folder / str(value)
-        if not file.is_file():
-            self._refuse("settings", key, f"there is no file {file}; paths count from the folder of {self._path.name}")
-        return str(file)
+        return value
 
     def _limits(self, table: dict[str, Any]) -> dict[str, float]:
         self._known(table, _LIMITS, "limits")
@@ -202,6 +203,37 @@ class _Reader:
         """Raise, with the line."""
         where = f"[{table}] {key}" if table else key
         raise InputError(f"{self._path}, line {line_of(self._text, table, key)}, {where}: {why}")
+
+
+def matching(folder: Path, parts: Sequence[str]) -> Iterator[Path]:
+    """Paths in a folder by a pattern, taken apart at its slashes; `Path.glob` gives up where a folder goes away while it looks.
+
+    Parameters
+    ----------
+    folder : path
+    parts : sequence of str
+        Names; ``*``, ``?`` and ``[`` as in a shell; ``**`` is any depth, without following links.
+
+    Raises
+    ------
+    ValueError
+        ``**`` beside something else, or a name that no system has.
+    """
+    if not parts:
+        yield folder
+        return
+    first, rest = parts[0], parts[1:]
+    if first == "**":
+        for inside, _, _ in os.walk(folder):
+            yield from matching(Path(inside), rest)
+    elif "**" in first:
+        raise ValueError("** must stand between slashes")
+    elif any(sign in first for sign in "*?["):
+        with suppress(OSError):  # it has gone, is no folder, or not ours to look into
+            for name in fnmatch.filter(os.listdir(folder), first):
+                yield from matching(folder / name, rest)
+    else:
+        yield from matching(folder / first, rest)
 
 
 def line_of(text: str, table: str, key: str) -> int:

@@ -1,5 +1,7 @@
 """The file of a batch: every list multiplies, and what is wrong in it is told with its line."""
 
+import os
+import shutil
 from pathlib import Path
 
 import pytest
@@ -55,6 +57,36 @@ def test_limits_are_of_the_jobs_and_not_of_their_names(folder: Path) -> None:
     assert len(names) == 1 and (job.time_s, job.memory_mb) == (5.0, 100.0)
 
 
+@pytest.mark.parametrize(
+    ("pattern", "names"),
+    [
+        ("**/*.obj", ["a.obj", "c.obj", "d.obj"]),
+        ("in/**/?.obj", ["c.obj", "d.obj"]),
+        ("in/*/*", ["d.obj"]),
+        ("in/../[ab].*", ["a.obj", "b.stl"]),
+    ],
+)
+def test_patterns(folder: Path, pattern: str, names: list[str]) -> None:
+    (folder / "in/.deep").mkdir()
+    (folder / "in/.deep/d.obj").write_text("d")
+    (folder / "in/.deep/around").symlink_to(folder)
+    for text in (pattern, f"{folder}/{pattern}"):
+        assert sorted(name for name, _ in plan(folder, f"meshes = {text!r}")[0]) == names
+
+
+def test_a_folder_that_goes_away_meanwhile_is_passed_over(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Below / there are processes that end."""
+
+    def listed(path: Path) -> list[str]:
+        if Path(path).name == "in":
+            shutil.rmtree(path)
+        return listing(path)
+
+    listing = os.listdir
+    monkeypatch.setattr(os, "listdir", listed)
+    assert plan(folder, "meshes = '**/*.obj'") == ([("a.obj", {})], ())
+
+
 def test_results_are_no_meshes_and_the_same_is_done_once(folder: Path) -> None:
     (folder / "out/jobs/x").mkdir(parents=True)
     (folder / "out/jobs/x/flat.obj").write_text("v")
@@ -84,6 +116,9 @@ def test_results_are_no_meshes_and_the_same_is_done_once(folder: Path) -> None:
         ('meshes = "a.obj"\n[settings]\nrepair = "yes"', "line 3, [settings] repair: 'yes' does not go here; it must be true or false"),
         ('meshes = "a.obj"\n[settings]\nseed = []', "line 3, [settings] seed: the list is empty"),
         ('meshes = "a.obj"\n[settings]\nsensors = "two.toml"', "line 3, [settings] sensors: there is no file"),
+        ('meshes = "a.obj"\n[settings]\nprinter = ["generic-grbl", "nope"]', "line 3, [settings] printer: no printer profile named 'nope'"),
+        ('meshes = "a.obj"\n[settings]\nprinter = "one.toml"', "line 3, [settings] printer: printer profile"),
+        ('meshes = "a.obj"\n[settings]\nmaterial = "nope"', "line 3, [settings] material: no material profile named 'nope'; there"),
         ('meshes = "a.obj"\n[settings]\ncomplete = true', "[settings]: a.obj: --complete goes with --cuts"),
         ('meshes = "a.obj"\n[limits]\ntime = 3', "line 3, [limits] time: it is not known here; did you mean time_s?"),
         ('meshes = "a.obj"\n[limits]\nmemory_mb = 0', "line 3, [limits] memory_mb: 0 is not a positive number"),
