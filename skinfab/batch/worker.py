@@ -13,6 +13,7 @@ import socket
 import subprocess
 import sys
 import threading
+import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -72,7 +73,7 @@ class Runners:
                 self._idle.append(runner)
                 return Ran(**json.loads(answer))
             self._busy.discard(runner)
-        _end(runner)
+        _dispose(runner)
         if self._closing:
             raise Closing
         return None
@@ -83,13 +84,8 @@ class Runners:
             self._closing = True
             idle, busy = self._idle, list(self._busy)
             self._idle, self._busy = [], set()
-        for runner in idle:
-            _end(runner)
-        for runner in busy:
-            # Its thread waits for the answer and tidies up.
-            assert runner.stdin is not None
-            with suppress(BrokenPipeError):
-                runner.stdin.close()
+        _dispose(*idle)
+        _end(*busy)  # the thread that waits for its answer disposes of it
 
     def _take(self) -> subprocess.Popen[bytes]:
         with self._lock:
@@ -99,8 +95,7 @@ class Runners:
             self._idle = [runner for runner in self._idle if runner not in gone]
             runner = self._idle.pop() if self._idle else self._start()
             self._busy.add(runner)
-        for old in gone:
-            _end(old)
+        _dispose(*gone)
         return runner
 
     def _start(self) -> subprocess.Popen[bytes]:
@@ -120,16 +115,25 @@ class Closing(Exception):
     """The worker ends while it does a job, which is not over."""
 
 
-def _end(runner: subprocess.Popen[bytes]) -> None:
-    assert runner.stdin is not None and runner.stdout is not None
-    with suppress(BrokenPipeError):
-        runner.stdin.close()  # at which it kills its job and ends
-    try:
-        runner.wait(timeout=_END_S)
-    except subprocess.TimeoutExpired:
-        runner.kill()  # it is still loading what it needs, and has no job yet
-        runner.wait()
-    runner.stdout.close()
+def _end(*runners: subprocess.Popen[bytes]) -> None:
+    for runner in runners:
+        assert runner.stdin is not None
+        with suppress(BrokenPipeError):
+            runner.stdin.close()  # at which it kills its job and ends
+    end = time.monotonic() + _END_S
+    for runner in runners:
+        try:
+            runner.wait(timeout=max(end - time.monotonic(), 0.0))
+        except subprocess.TimeoutExpired:
+            runner.kill()  # it is still loading what it needs, and has no job yet
+            runner.wait()
+
+
+def _dispose(*runners: subprocess.Popen[bytes]) -> None:
+    _end(*runners)
+    for runner in runners:
+        assert runner.stdout is not None
+        runner.stdout.close()
 
 
 def do_job(job: Job, folder: str, run: str, runners: Runners) -> dict[str, Any]:
@@ -207,7 +211,7 @@ def _judged(job: Job, ran: Ran | None, last: str) -> dict[str, Any]:
     if ran.exit == 0:
         return {**used, "status": "made", "message": ""}
     if DISK_FULL in last or os.strerror(errno.ENOSPC) in last:
-        raise InputError(last)  # of the whole batch, not of this job
+        raise OSError(errno.ENOSPC, last)  # of the whole batch, not of this job
     return {**used, "status": "refused" if ran.exit == 3 else "failed", "message": last or f"exit status {ran.exit}"}
 
 
@@ -277,9 +281,8 @@ def task(job: Job, folder: str, run: str, runner: Sequence[str]) -> dict[str, An
 
 def end_jobs(run: str, dask_worker: Any) -> None:
     """On a worker of a Dask cluster: end the runners of this run, and what they are doing."""
-    runners = dask_worker.extensions.pop(f"skinfab-{run}", None)
-    if runners is not None:
-        runners.close()
+    # A job that comes only now finds them closed.
+    dask_worker.extensions.setdefault(f"skinfab-{run}", Runners([])).close()
 
 
 def dask_setup(worker: Any) -> None:

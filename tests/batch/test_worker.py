@@ -3,6 +3,7 @@
 import json
 import os
 import signal
+import sys
 import threading
 from collections.abc import Iterator
 from pathlib import Path
@@ -99,7 +100,7 @@ def test_a_mesh_that_changes_meanwhile_is_told_and_nothing_kept(tmp_path: Path, 
 
 def test_a_full_disk_is_the_batch_s_fault(tmp_path: Path, runners: Runners) -> None:
     job = quick_job(tmp_path, "full")
-    with pytest.raises(InputError, match="the disk is full"):
+    with pytest.raises(InputError, match=f"^cannot write {tmp_path}: the disk is full; free some space and run again$"):
         do_job(job, str(tmp_path), "r", runners)
     assert not (tmp_path / "jobs").exists() and hidden(tmp_path) == []
 
@@ -122,6 +123,24 @@ def test_a_worker_that_ends_takes_its_job_with_it_and_keeps_nothing(tmp_path: Pa
     assert ends == [[]] and not (tmp_path / "jobs").exists()
     with pytest.raises(Closing):
         own.run(["x"], said=tmp_path / "said", time_s=None, memory_mb=None)
+
+
+def test_a_runner_that_still_loads_ends_with_the_worker(tmp_path: Path) -> None:
+    own, ends = Runners([sys.executable, "-S", "-c", "import time; time.sleep(600)"]), []
+
+    def work() -> None:
+        with pytest.raises(Closing):
+            own.run(["x"], said=tmp_path / "said", time_s=None, memory_mb=None)
+        ends.append(True)
+
+    thread = threading.Thread(target=work)
+    thread.start()
+    wait_for(lambda: own._busy)
+    (runner,) = own._busy
+    own.close()
+    assert runner.poll() is not None
+    thread.join(timeout=20)
+    assert ends == [True]
 
 
 def test_a_job_dies_with_the_process_that_watches_it(tmp_path: Path) -> None:
