@@ -102,7 +102,7 @@ def run(
     meshes : sequence of Path
         Beside those of `mesh_files`.
     sizes : sequence of int
-        Triangles of a test disk that all methods are run on once, for how their time grows.
+        Triangles of a test ball that all methods are run on once, for how their time grows.
     repeats : int
         Of each method on each object, in turn with the others; the least time counts.
     progress : Progress

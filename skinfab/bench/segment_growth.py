@@ -6,9 +6,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from skinfab.bench.balls import bumpy_ball
 from skinfab.bench.charts import png
 from skinfab.bench.contestants import Contestant
-from skinfab.bench.disks import bumpy_cap
 from skinfab.bench.flatten import read_csv, write_csv
 from skinfab.bench.segment import measure_objects
 from skinfab.files import atomic_write
@@ -22,14 +22,14 @@ _DPI = 150
 def follow(
     folder: Path, sizes: Sequence[int], peer: Contestant | None, *, progress: Progress = silent
 ) -> tuple[list[dict[str, Any]], list[str]]:
-    """Measure every method once on a cap of each size at the default bound, and write growth.csv and growth.png into `folder`.
+    """Measure every method once on a ball of each size at the default bound, and write growth.csv and growth.png into `folder`.
 
     Parameters
     ----------
     folder : Path
         There already.
     sizes : sequence of int
-        Triangles, see `bumpy_cap`.
+        Triangles, see `bumpy_ball`.
     peer : Contestant, optional
     progress : Progress
 
@@ -39,8 +39,8 @@ def follow(
         As growth.csv has them.
     refused : list of str
     """
-    caps = [(f"cap {size}", Mesh(*bumpy_cap(size), f"cap {size}")) for size in sizes]
-    rows, refused = measure_objects(caps, peer, bounds=(Limits.mean,), repeats=1, progress=progress)
+    balls = [(f"ball {size}", Mesh(*bumpy_ball(size), f"ball {size}")) for size in sizes]
+    rows, refused = measure_objects(balls, peer, bounds=(Limits.mean,), repeats=1, progress=progress)
     write_csv(rows, folder / "growth.csv")
     table = read_csv(folder / "growth.csv")
     draw_growth(table, folder / "growth.png")

@@ -10,7 +10,7 @@ from skinfab.bench.segment_growth import draw_growth, follow
 
 def test_every_method_on_every_size(tmp_path: Path) -> None:
     rows, refused = follow(tmp_path, [300, 600], None)
-    assert refused == [] and {(row["method"], row["object"]) for row in rows} == {(a, f"cap {n}") for a in AIMS for n in (300, 600)}
+    assert refused == [] and {(row["method"], row["object"]) for row in rows} == {(a, f"ball {n}") for a in AIMS for n in (300, 600)}
     assert all(abs(row["triangles"] / int(row["object"].split()[1]) - 1) < 0.1 for row in rows)
     assert all(row["mean_d"] <= 4.05 and row["overlap_mm2"] == 0 == row["flipped"] and row["seconds"] > 0 for row in rows)
     assert (tmp_path / "growth.csv").read_text(encoding="utf-8").count("\n") == 1 + len(rows)

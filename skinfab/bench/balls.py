@@ -1,0 +1,57 @@
+"""A closed surface of any size from a formula, so that seams can be measured on it at every number of triangles."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+from numpy.typing import NDArray
+
+from skinfab.errors import InputError
+
+#: Fewer triangles do not carry the bumps; more do not fit most memories.
+LEAST, MOST = 150, 4_000_000
+
+_RADIUS = 30.0  # mm
+_BUMP = 0.08  # of the radius
+
+
+def bumpy_ball(triangles: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """A ball with bumps, which no single cut flattens well: V (n, 3) mm and F (m, 3), closed, wound outward.
+
+    Parameters
+    ----------
+    triangles : int
+        About how many; the nearest 8 k^2 are made, an octahedron's.
+
+    Raises
+    ------
+    InputError
+        Fewer than 150 or more than 4 million.
+
+    Examples
+    --------
+    >>> V, F = bumpy_ball(300)
+    >>> V.shape, F.shape
+    ((146, 3), (288, 3))
+    """
+    if not LEAST <= triangles <= MOST:
+        raise InputError(f"a test ball of {triangles} triangles is not made; give {LEAST} to {MOST}")
+    k = round((triangles / 8) ** 0.5)
+    i, j = (a.ravel() for a in np.meshgrid(np.arange(k + 1), np.arange(k + 1), indexing="ij"))
+    up, down = i + j < k, i + j < k - 1
+    corners = (
+        [(i[up], j[up]), (i[up] + 1, j[up]), (i[up], j[up] + 1)],
+        [(i[down] + 1, j[down]), (i[down] + 1, j[down] + 1), (i[down], j[down] + 1)],
+    )
+    octant = np.concatenate([np.stack([np.stack([a, b, k - a - b], axis=1) for a, b in three], axis=1) for three in corners])
+    signs = np.array(list(itertools.product((1, -1), repeat=3)))
+    faces = [(octant * sign)[:, :: int(sign.prod())] for sign in signs]  # a mirrored octant is wound the other way
+    lattice, F = np.unique(np.concatenate(faces).reshape(-1, 3), axis=0, return_inverse=True)
+
+    # Steps of the same angle along the octahedron's edges, so that no part of the ball has much larger triangles than another.
+    towards = np.sin(lattice / k * (np.pi / 2))
+    towards /= np.linalg.norm(towards, axis=1, keepdims=True)
+    x, y, z = towards.T
+    bumps = np.sin(5 * x + 1) * np.cos(4 * y) + 0.5 * np.sin(9 * y + 2 * x) * z
+    return _RADIUS * (1 + _BUMP * bumps)[:, None] * towards, F.reshape(-1, 3).astype(np.int64)
