@@ -271,12 +271,12 @@ class SeamCommands:
 
     def _tell_of_sensors(self, asked: Skin, result: Reopened) -> None:
         """At once, which sensors came back and which were taken off by this step."""
-        said = []
+        said = [f"{note}." for note in result.notes]
         if result.lost and asked.sensors:
             self._took_off = self._desk.session.step
             self._list_lifted()
             lost = {sensor.id for sensor in result.lost}
-            said = [p.text + "." for p in taken_off([e for e in result.skin.lifted if e.sensor.id in lost], by_last_step=True)]
+            said += [p.text + "." for p in taken_off([e for e in result.skin.lifted if e.sensor.id in lost], by_last_step=True)]
         back: dict[str, list[str]] = {}
         for sensor in result.back:
             back.setdefault(sensor.piece, []).append(sensor.id)

@@ -86,5 +86,6 @@ def _document(args: argparse.Namespace) -> tuple[Skin, Sequence[Distortion]]:
     roomy, _ = with_room_for_nozzle(used.material, used.printer)
     with terminal_progress(quiet=args.json) as progress:
         found = auto_cut(skin, within, neck=used.material.neck, material=roomy, aim=args.pieces, progress=progress)
+    steps.say(found.notes)
     steps.say([fault.text for fault in found.faults], kind="warning")
     return found.skin, found.distortions

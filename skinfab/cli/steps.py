@@ -233,6 +233,7 @@ def to_skin(
 def cut(args: argparse.Namespace, loaded: Loaded, mesh: Mesh, used: Used, progress: Progress) -> Seams:
     """Automatic seams of the surface that is flattened, or those that ``--cuts`` gives."""
     from skinfab.seams.auto import find_seams
+    from skinfab.seams.parted import parted_text
 
     within, neck = limits(bound_of(args), used, args.max_p99), used.material.neck
 
@@ -241,7 +242,9 @@ def cut(args: argparse.Namespace, loaded: Loaded, mesh: Mesh, used: Used, progre
 
     if args.cuts is not None:
         return _by_hand(args, loaded, mesh, within, neck, report)
-    return find_seams(mesh, within, neck=neck, aim=args.pieces, progress=report)
+    found = find_seams(mesh, within, neck=neck, aim=args.pieces, progress=report)
+    say(parted_text(found.pieces, within))
+    return found
 
 
 def _by_hand(args: argparse.Namespace, loaded: Loaded, mesh: Mesh, within: Limits, neck: float, progress: Callable[[float], None]) -> Seams:

@@ -23,6 +23,7 @@ from skinfab.seams.fewest import fewest_seams
 from skinfab.seams.glue import glue_pieces
 from skinfab.seams.judge import Limits
 from skinfab.seams.naming import named_edges
+from skinfab.seams.parted import carried_parted
 from skinfab.seams.refine import Judged, refine_seams
 from skinfab.seams.rules import EdgeRules, coarse_rules
 from skinfab.seams.simplest import simplest_seams
@@ -171,6 +172,7 @@ def _usual(mesh: Mesh, limits: Limits, neck: float, rules: EdgeRules | None, rep
     cut, pieces = refine_seams(
         mesh, cut, limits, weight, forbidden=forbidden, progress=lambda done: report(0.5 + 0.4 * done), tolerance=_SEARCH_DECREASE
     )
+    pieces = carried_parted(small, seams.pieces, mesh, pieces)
     stay = None if rules is None else rules.locked
     return Seams(
         *glue_pieces(

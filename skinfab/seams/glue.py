@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -94,7 +96,8 @@ def glue_pieces(
             refused.add((a, b, first))
             continue
         cut = trial
-        judged[fresh] = (piece, verdict)
+        one, other = judged[a][1].parted, judged[b][1].parted
+        judged[fresh] = (piece, replace(verdict, parted=one) if one == other else verdict)
         owner[faces] = fresh
         del judged[a], judged[b]
         fresh += 1

@@ -46,6 +46,28 @@ class Limits:
     neck: float = 0.0
 
 
+@dataclass(frozen=True)
+class Parted:
+    """A larger piece that was parted because of a length, not of its flatness.
+
+    Parameters
+    ----------
+    first_face : int
+        Of the mesh; which piece it was.
+    large : bool
+        It did not fit the bed.
+    neck : float, mm
+        Width of a neck too narrow; 0: it had none.
+    flat : bool
+        It was good but for that.
+    """
+
+    first_face: int
+    large: bool
+    neck: float
+    flat: bool
+
+
 @dataclass(frozen=True, eq=False)
 class Verdict:
     """A flattened piece and what is wrong with it.
@@ -58,6 +80,8 @@ class Verdict:
     too_distorted, overlaps, too_large : bool
     neck : Neck, optional
         One that is too narrow; not looked for in what is bad already.
+    parted : Parted, optional
+        Of which the piece is a part, see `refine_seams`.
     """
 
     UV: NDArray[np.float64]
@@ -66,6 +90,7 @@ class Verdict:
     overlaps: bool
     too_large: bool
     neck: Neck | None = None
+    parted: Parted | None = None
 
     @property
     def accepted(self) -> bool:

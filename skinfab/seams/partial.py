@@ -21,6 +21,7 @@ from skinfab.seams.enclosed import enclosed_text
 from skinfab.seams.finish import finish
 from skinfab.seams.judge import Limits
 from skinfab.seams.lenient import LaidFlat, kept_flat, lay_flat, require_method
+from skinfab.seams.parted import parted_text
 from skinfab.seams.pieces import to_pieces
 from skinfab.seams.rules import edge_mask, edge_rules
 from skinfab.skin import Skin
@@ -63,6 +64,8 @@ class Reopened:
         Sensors whose spot is on no piece any more, as they were.
     back : tuple of Sensor
         Lifted ones that came back.
+    notes : tuple of str
+        Why an automatic cut gives as many pieces as it does, where the bed or a neck is why.
     """
 
     skin: Skin
@@ -70,6 +73,7 @@ class Reopened:
     distortions: tuple[Distortion, ...]
     lost: tuple[Sensor, ...]
     back: tuple[Sensor, ...] = ()
+    notes: tuple[str, ...] = ()
 
 
 def reopen(
@@ -183,6 +187,7 @@ def auto_cut(
     mesh = skin.mesh
     rules = None if skin.marks is None or skin.marks.empty else edge_rules(mesh, skin.marks)
     found = find_seams(mesh, limits, neck=neck, rules=rules, aim=aim, progress=lambda part: progress(0.95 * part, "cutting and flattening"))
+    notes = tuple(parted_text(found.pieces, limits))
     found = finish(mesh, found, limits)
     pieces = to_pieces(mesh, found.pieces)
     by_first_face = {int(piece.faces[0]): verdict.distortion for piece, verdict in found.pieces}
@@ -190,7 +195,8 @@ def auto_cut(
     small = [] if rules is None else enclosed_text(mesh, pieces, rules.locked, neck)
     faults = [Fault(text, piece.faces, piece.id) for text, piece in small]
     progress(1.0, "cutting and flattening")
-    return _with_sensors(new, skin, faults, [by_first_face[int(piece.faces[0])] for piece in pieces], material=material)
+    distortions = [by_first_face[int(piece.faces[0])] for piece in pieces]
+    return replace(_with_sensors(new, skin, faults, distortions, material=material), notes=notes)
 
 
 def _with_sensors(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +13,7 @@ from skinfab.mesh.model import Mesh
 from skinfab.seams.cut import OpenPiece, mesh_edges, open_pieces
 from skinfab.seams.darts import grow_dart
 from skinfab.seams.disk import cut_to_disk
-from skinfab.seams.judge import Limits, Verdict, excess, judge
+from skinfab.seams.judge import Limits, Parted, Verdict, excess, judge
 from skinfab.seams.naming import named_edges
 from skinfab.seams.split import farthest_faces, overlapping_faces, part, split
 from skinfab.tolerances import NEWTON_DECREASE
@@ -64,7 +65,7 @@ def refine_seams(
     -------
     cut : (e,) bool
     pieces : list of (OpenPiece, Verdict)
-        By first face.
+        By first face; what was parted by the bed or a neck says so.
 
     Raises
     ------
@@ -76,11 +77,11 @@ def refine_seams(
     """
     cut = cut.copy()
     left = _MOST_TRIANGLES + _MOST_ROUNDS * len(mesh.F)
-    todo = [(piece, 0) for piece in open_pieces(mesh, cut)]
+    todo: list[tuple[OpenPiece, int, Parted | None]] = [(piece, 0, None) for piece in open_pieces(mesh, cut)]
     done: list[Judged] = []
     finished_area = 0.0
     while todo:
-        piece, darts = todo.pop()
+        piece, darts, parted = todo.pop()
         verdict = None
         if piece.is_disk:
             left -= len(piece.F)
@@ -88,11 +89,12 @@ def refine_seams(
                 raise _endless(mesh, len(done), 1 - finished_area / mesh.area)
             verdict = judge(mesh, piece, limits, tolerance=tolerance)
             if verdict.accepted:
-                done.append((piece, verdict))
+                done.append((piece, verdict if parted is None else replace(verdict, parted=parted)))
                 finished_area += float(mesh.face_areas[piece.faces].sum())
                 if progress:
                     progress(finished_area / mesh.area)
                 continue
+            parted = parted or _by_length(piece, verdict)
         opened, darts = next_cut(mesh, piece, verdict, weight, darts, forbidden=forbidden)
         if forbidden is not None and forbidden[opened].any():
             kept = opened[forbidden[opened]]
@@ -103,7 +105,7 @@ def refine_seams(
             raise _stuck(mesh, piece, verdict, limits)
         cut[opened] = True
         parts = open_pieces(mesh, cut, faces=piece.faces)
-        todo += [(part, darts if len(parts) == 1 else 0) for part in parts]
+        todo += [(part, darts if len(parts) == 1 else 0, parted) for part in parts]
     return cut, sorted(done, key=lambda item: int(item[0].faces[0]))
 
 
@@ -146,6 +148,14 @@ def next_cut(
     else:
         ends = farthest_faces(piece, verdict.UV)
     return split(mesh, piece, ends, weight), 0
+
+
+def _by_length(piece: OpenPiece, verdict: Verdict) -> Parted | None:
+    """What is to be remembered of a piece that is parted because of the bed or a neck."""
+    if not verdict.too_large and verdict.neck is None:
+        return None
+    flat = not verdict.too_distorted and not verdict.overlaps
+    return Parted(int(piece.faces[0]), verdict.too_large, 0.0 if verdict.neck is None else verdict.neck.width, flat)
 
 
 def _endless(mesh: Mesh, pieces: int, missing: float) -> RefusedError:
