@@ -16,6 +16,7 @@ from gui.state.session import Session
 from skinfab.errors import InputError, SkinfabError
 from skinfab.material import load_material
 from skinfab.skin import Skin
+from skinfab.tolerances import BOUNDS
 
 _OWN = "a file of your own …"
 
@@ -42,7 +43,9 @@ class DocumentForm(ttk.Frame):
             name="bound",
             take=self._set_bound,
             complain=complain,
-            tip="Pieces are cut until each piece's mean distortion is at most this; 4 is perfect, 4.05 the default.",
+            tip="Pieces are cut until each piece's mean distortion is at most this; 4 is perfect. More is less seam: "
+            + ", ".join(f"{name} ({value:g})" for name, value in BOUNDS.items())
+            + ".",
         )
         self.bound.grid(row=2, column=0, columnspan=2, sticky="ew", pady=2)
         self.thickness = Field(
@@ -123,7 +126,12 @@ class DocumentForm(ttk.Frame):
         self.usual.state(["!disabled" if self._depth not in (0.0, skin.thickness) else "disabled"])
 
     def _set_bound(self, text: str) -> None:
-        skin, value = self._session.skin, number(text, "the bound")
+        skin = self._session.skin
+        if text in BOUNDS:
+            value = BOUNDS[text]
+            self.after_idle(self.refresh)  # shows the number once the name is taken
+        else:
+            value = number(text, "the bound")
         if not value > 4:
             raise InputError(f"the bound is {value:g}; it must be above 4, which is a perfect flattening")
         if skin is not None and value != skin.max_distortion:

@@ -73,9 +73,9 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     )
     p.add_argument(
         "--max-distortion",
-        type=steps.bound,
+        type=steps.mean_bound,
         default=4.05,
-        metavar="D",
+        metavar="D|NAME",
         help="what a skin stands; where auto cuts, each piece's bound (default: 4.05)",
     )
     p.add_argument(

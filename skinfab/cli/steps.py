@@ -9,6 +9,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from skinfab.tolerances import BOUNDS
+
 if TYPE_CHECKING:
     from gcode.used import Used
     from skinfab.flatten.distortion import Distortion
@@ -66,8 +68,20 @@ def share(text: str) -> float:
     return value
 
 
+def mean_bound(text: str) -> float:
+    """A bound on the mean d, for argparse: one of `BOUNDS` by name, or as `bound`."""
+    if text in BOUNDS:
+        return BOUNDS[text]
+    try:
+        return bound(text)
+    except argparse.ArgumentTypeError as fault:
+        if text[:1].isalpha():
+            raise argparse.ArgumentTypeError(f"{text!r} is neither a number above 4 nor one of {', '.join(BOUNDS)}") from fault
+        raise
+
+
 def bound(text: str) -> float:
-    """A bound on the mean d, for argparse: above the perfect 4."""
+    """A bound on d, for argparse: above the perfect 4."""
     value = positive(text)
     if not value > 4:
         raise argparse.ArgumentTypeError(f"{text} is not above 4, which is a perfect flattening")
@@ -110,7 +124,14 @@ def add_cut_options(p: argparse.ArgumentParser) -> None:
         help="of automatic seams: as few pieces, with as little seam, as the bound allows; simple ones well within it; or compact ones "
         "without darts (default: usual)",
     )
-    p.add_argument("--max-distortion", type=bound, metavar="D", help="mean d of a piece at most (default 4.05; 4 is perfect)")
+    p.add_argument(
+        "--max-distortion",
+        type=mean_bound,
+        metavar="D|NAME",
+        help="mean d of a piece at most (default 4.05; 4 is perfect), or a name for it: "
+        + ", ".join(f"{name} ({value:g})" for name, value in BOUNDS.items())
+        + "; more is less seam",
+    )
     p.add_argument("--max-p99", type=bound, metavar="D", help="d that 99 %% of a piece's area keep to (default: not asked for)")
     p.add_argument("--printer", metavar="NAME|FILE", help="printer profile, whose bed the pieces must fit")
     p.add_argument("--material", metavar="NAME|FILE.toml", help="material profile: ink, silicone, mould (see skinfab strips)")

@@ -29,7 +29,7 @@ def plan(folder: Path, text: str) -> tuple[list[tuple[str, dict]], tuple[str, ..
 
 def test_meshes_times_settings(folder: Path) -> None:
     jobs, notes = plan(
-        folder, 'meshes = ["**/*.obj", "b.stl", "a.obj"]\n[settings]\nmax-distortion = [4.1, "4.20"]\nrepair = [false, true]\nseed = 7'
+        folder, 'meshes = ["**/*.obj", "b.stl", "a.obj"]\n[settings]\nmax-distortion = ["short", "4.20"]\nrepair = [false, true]\nseed = 7'
     )
     assert [name for name, _ in jobs] == ["a.obj"] * 4 + ["c.obj"] * 4 + ["b.stl"] * 4 and notes == ()
     assert [settings for _, settings in jobs[:4]] == [

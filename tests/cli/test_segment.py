@@ -53,6 +53,16 @@ def test_fewest_pieces(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> No
     assert found[1]["seam_mm"] == pytest.approx(found[0]["seam_mm"])
 
 
+def test_bounds_by_name(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    target = tmp_path / "a.skin"
+    for name, bound in (("standard", 4.05), ("short", 4.1), ("shortest", 4.2)):
+        assert main(["segment", CUBE, "-o", str(target), "--max-distortion", name]) == 0
+        assert load_skin(target).max_distortion == bound
+    capsys.readouterr()
+    assert main(["segment", CUBE, "-o", str(target), "--max-distortion", "shorter"]) == 2
+    assert "'shorter' is neither a number above 4 nor one of standard, short, shortest" in capsys.readouterr().err
+
+
 def test_hot_spots_are_bounded_on_request(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     target = str(tmp_path / "a.skin")
     p99 = []

@@ -107,6 +107,9 @@ def test_a_piece_and_the_document_in_numbers(root, session, panel):
     assert "0 or more" in panel.said[-1] and panel.thick == [2.5]
     type_into(root, panel, "document.bound", "4")
     assert "above 4" in panel.said[-1] and session.skin.max_distortion == 4.2
+    type_into(root, panel, "document.bound", "short")
+    root.update()
+    assert session.skin.max_distortion == 4.1 and panel.nametowidget("document.bound").entry.get() == "4.1"
 
 
 def test_another_printer_is_chosen(root, session, panel):
