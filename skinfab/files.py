@@ -127,6 +127,8 @@ def explain_os_error(fault: OSError, target: str | Path) -> str:
         return f"cannot write {target}: {DISK_FULL}; free some space and run again"
     if fault.errno in (errno.ENOENT, errno.ENOTDIR):
         return f"cannot write {target}: {_missing(fault, Path(target))}"
+    if fault.errno == errno.EEXIST and Path(target).is_file():
+        return f"cannot write {target}: it is a file, not a folder; choose another folder"
     if fault.errno == errno.EISDIR:
         return f"cannot write {target}: it is a folder; name a file in it"
     if fault.errno in (errno.EACCES, errno.EROFS, errno.EPERM):

@@ -6,10 +6,11 @@ import fcntl
 import logging
 import math
 import secrets
+import shutil
 import tempfile
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -37,6 +38,9 @@ COUNTED_S = 1.0
 #: A scheduler of our own never gives a job up: a job that kills its workers is told by its own count (`skinfab.batch.worker`), and the
 #: scheduler's would blame jobs that only waited beside it.
 _NEVER = 1_000_000
+
+#: Begin of the name of a folder for the files of workers here.
+_SCRATCH = "skinfab-batch-"
 
 #: Dask gives some of its loggers a level of their own.
 _LOGGERS = ("distributed", "distributed.client", "tornado", "tornado.application", "asyncio")
@@ -77,7 +81,7 @@ def _local(workers: int) -> Iterator[Client]:
     from distributed import Client, LocalCluster
 
     with (
-        tempfile.TemporaryDirectory(prefix="skinfab-batch-", ignore_cleanup_errors=True) as scratch,
+        _scratch() as scratch,
         LocalCluster(
             n_workers=workers,
             threads_per_worker=1,
@@ -92,6 +96,21 @@ def _local(workers: int) -> Iterator[Client]:
         Client(cluster, set_as_default=False) as client,
     ):
         yield client
+
+
+@contextmanager
+def _scratch() -> Iterator[str]:
+    """A folder for the workers' own files; those that clients left which were killed are removed."""
+    for lock in Path(tempfile.gettempdir()).glob(f"{_SCRATCH}*/{LOCK}"):
+        with suppress(OSError), lock.open("a") as file:  # of a client at work, or of another user
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            shutil.rmtree(lock.parent, ignore_errors=True)
+    with tempfile.TemporaryDirectory(prefix=_SCRATCH, ignore_cleanup_errors=True) as folder:
+        new = Path(folder, "new")
+        with new.open("a") as file:
+            fcntl.flock(file, fcntl.LOCK_EX)
+            new.rename(new.with_name(LOCK))  # so that nobody meets it without its lock
+            yield folder
 
 
 @contextmanager

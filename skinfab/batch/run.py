@@ -8,7 +8,7 @@ import queue
 import secrets
 import shutil
 from collections import deque
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import CancelledError
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
@@ -60,6 +60,7 @@ def run_batch(
     scheduler: str | None = None,
     runner: Sequence[str] | None = None,
     progress: Progress = silent,
+    broken_off: Callable[[Outcome], None] | None = None,
 ) -> Outcome:
     """Do what is not done yet.
 
@@ -75,6 +76,8 @@ def run_batch(
     runner : sequence of str, optional
         The program that does the jobs; default `runner_command`.
     progress : Progress
+    broken_off : callable, optional
+        Given what is known where the batch ends before its jobs do, by an interrupt or an error, which goes on afterwards.
 
     Raises
     ------
@@ -97,6 +100,11 @@ def run_batch(
                             if record["status"] != "not run":
                                 lines.write(json.dumps(record) + "\n")
                                 lines.flush()
+                except BaseException:
+                    if broken_off is not None:
+                        not_run = {job.name: _not_run(job, "the batch was broken off before") for job in jobs}
+                        broken_off(Outcome({**not_run, **records}, len(done), tuple(notes)))
+                    raise
                 finally:
                     _sweep(home)
             if not any(record["status"] == "not run" for record in records.values()):
@@ -104,6 +112,10 @@ def run_batch(
     except OSError as fault:
         raise InputError(explain_os_error(fault, home.folder)) from fault
     return Outcome({job.name: records[job.name] for job in jobs}, len(done), tuple(notes))
+
+
+def _not_run(job: Job, why: str) -> dict[str, Any]:
+    return {"job": job.name, "status": "not run", "message": f"{why}; run again"}
 
 
 @contextmanager
@@ -137,9 +149,14 @@ def _done(home: Home, jobs: Sequence[Job]) -> tuple[dict[str, dict[str, Any]], l
         else:
             done[job.name] = record
     others = len(there - {job.name for job in jobs})
-    notes = [f"{others} results in {home.folder / 'jobs'} are of other meshes or settings and were left alone"] if others else []
+    place, notes = home.folder / "jobs", []
+    if others:
+        they = f"{others} results in {place} are" if others > 1 else f"1 result in {place} is"
+        notes.append(f"{they} of other meshes or settings and left alone")
     old = sum(record["skinfab"] != __version__ for record in done.values())
-    notes += [f"{old} of the results were made by another version of skinfab; remove their folders to have them made anew"] if old else []
+    if old:
+        they = f"{old} of the results were" if old > 1 else "1 of the results was"
+        notes.append(f"{they} made by another version of skinfab; remove what is to be made anew from {place}")
     return done, notes
 
 
@@ -223,4 +240,4 @@ class _Submitting:
         if isinstance(fault, KilledWorker) and times <= ATTEMPTS:
             self._waiting.append((job, times + 1))  # the scheduler counts what waited there too: the job's own count decides
             return None
-        return {"job": job.name, "status": "not run", "message": f"{type(fault).__name__}: {fault}; run again"}
+        return _not_run(job, f"{type(fault).__name__}: {fault}")

@@ -111,7 +111,10 @@ def _page(plan: Plan, outcome: Outcome, folder: Path) -> str:
     options = [f"--{key}" for key in plan.keys]  # a figure may have the name of a setting
     head = ["mesh", *options, "result", *(f"#{title}" for title, _ in (*_FIGURES.values(), *_USED.values()))]
     rows = [_row(job, named(job), outcome.records[job.name], _settings(job, plan)) for job in plan.jobs]
-    why = [[_link(job, named(job)), *_settings(job, plan), escape(outcome.records[job.name]["message"])] for job in failed]
+    why = [
+        [_link(job, named(job), outcome.records[job.name]["status"]), *_settings(job, plan), escape(outcome.records[job.name]["message"])]
+        for job in failed
+    ]
     parts = [
         "<!doctype html>",
         '<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width">',
@@ -132,7 +135,7 @@ def _row(job: Job, name: str, record: Mapping[str, Any], settings: Sequence[str]
     figures = record.get("figures", {})
     numbers = [form.format(figures[key]) if key in figures else "" for key, (_, form) in _FIGURES.items()]
     used = [form.format(record[key]) if key in record else "" for key, (_, form) in _USED.items()]
-    return [_link(job, name, made=record["status"] == "made"), *settings, escape(record["status"]), *numbers, *used]
+    return [_link(job, name, record["status"]), *settings, escape(record["status"]), *numbers, *used]
 
 
 def _settings(job: Job, plan: Plan) -> list[str]:
@@ -151,8 +154,11 @@ class _Names:
         return os.path.relpath(job.mesh, self._folder)
 
 
-def _link(job: Job, text: str, *, made: bool = False) -> str:
-    return f'<a href="jobs/{job.name}/{"report.html" if made else ""}">{escape(text)}</a>'
+def _link(job: Job, text: str, status: str) -> str:
+    """To what there is of it."""
+    if status == "not run":
+        return escape(text)
+    return f'<a href="jobs/{job.name}/{"report.html" if status == "made" else ""}">{escape(text)}</a>'
 
 
 def _table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:

@@ -5,11 +5,12 @@ from __future__ import annotations
 import argparse
 import json
 import os
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from skinfab.cli import steps
-from skinfab.errors import RefusedError
+from skinfab.errors import InputError, RefusedError
 
 if TYPE_CHECKING:
     from skinfab.batch.run import Outcome
@@ -41,12 +42,18 @@ def run(args: argparse.Namespace) -> int:
     from skinfab.files import require_apart
     from skinfab.progress import terminal_progress
 
+    def broken_off(outcome: Outcome) -> None:
+        with suppress(InputError):  # a full disk, which is what is told
+            write_tables(plan, outcome, args.output)
+
     plan = read_plan(args.plan, output=args.output)
     require_apart(args.output, [], [args.plan, *{job.mesh for job in plan.jobs}], perhaps=[CSV, PAGE, OBJECT])
     steps.say(plan.notes)
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     with terminal_progress(quiet=args.json) as progress:
-        outcome = run_batch(plan.jobs, args.output, workers=args.workers or cores, scheduler=args.scheduler, progress=progress)
+        outcome = run_batch(
+            plan.jobs, args.output, workers=args.workers or cores, scheduler=args.scheduler, progress=progress, broken_off=broken_off
+        )
     found = write_tables(plan, outcome, args.output)
     steps.say(outcome.notes)
     if args.json:
@@ -62,6 +69,8 @@ def _status(outcome: Outcome, page: Path) -> int:
     without = [record["status"] for record in outcome.records.values() if record["status"] != "made"]
     if not without:
         return 0
-    message = f"{len(without)} of {len(outcome.records)} jobs have no result; {page} says why"
+    number = len(outcome.records)
+    message = f"{len(without)} of {number} jobs {'has' if len(without) == 1 else 'have'} no result; {page} says why"
+    message = message if number > 1 else f"the job has no result; {page} says why"
     steps.say([message], kind="warning")
     return RefusedError.exit_status if set(without) == {"refused"} else 1

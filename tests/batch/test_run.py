@@ -6,6 +6,7 @@ import os
 import signal
 import subprocess
 import sys
+import tempfile
 import threading
 from collections import Counter
 from collections.abc import Iterator, Mapping
@@ -16,6 +17,7 @@ from typing import Any
 import pytest
 from batches import RUNNER, quick_job, quick_jobs, wait_for
 
+from skinfab import __version__
 from skinfab.batch import cluster
 from skinfab.batch.job import STATUSES, Job
 from skinfab.batch.plan import read_plan
@@ -124,6 +126,10 @@ def test_a_killed_client_is_resumed_and_what_its_workers_still_do_is_waited_for(
     assert len((out / "jobs.jsonl").read_text().splitlines()) == 5
     again = run(jobs, out, "tcp://127.0.0.1:1")  # nothing is left to do, so nobody is asked
     assert again.before == 5 and again.records == outcome.records
+    record = out / "jobs" / jobs[0].name / "job.json"
+    record.write_text(record.read_text().replace(f'"{__version__}"', '"0.0.0"'))
+    (note,) = run(jobs, out, "tcp://127.0.0.1:1").notes
+    assert note.startswith("1 of the results was made by another version of skinfab; remove what")
 
 
 def test_a_scheduler_that_dies_is_told_and_another_goes_on(tmp_path: Path, scheduler: str) -> None:
@@ -159,7 +165,29 @@ def test_what_failed_for_a_limit_is_done_again_when_that_is_raised(tmp_path: Pat
     raised = run([replace(job, time_s=60) for job in jobs], tmp_path / "out", scheduler)
     assert raised.before == 2 and ends(raised.records) == {"made": 2, "failed": 1}
     fewer = run(jobs[:1], tmp_path / "out", scheduler)
-    assert fewer.notes == (f"2 results in {tmp_path / 'out/jobs'} are of other meshes or settings and were left alone",)
+    assert fewer.notes == (f"2 results in {tmp_path / 'out/jobs'} are of other meshes or settings and left alone",)
+
+
+def test_folders_of_killed_clients_are_removed_and_those_at_work_left(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    killed = tmp_path / "skinfab-batch-killed"
+    killed.mkdir()
+    (killed / cluster.LOCK).touch()
+    (tmp_path / "skinfab-batch-begins").mkdir()
+    with cluster._scratch() as first, cluster._scratch() as second:
+        assert not killed.exists() and Path(first).is_dir() and Path(second).is_dir()
+    assert os.listdir(tmp_path) == ["skinfab-batch-begins"]
+
+
+def test_a_full_disk_ends_the_batch_and_what_is_done_is_given(tmp_path: Path, scheduler: str) -> None:
+    jobs, told = quick_jobs(tmp_path, ["make", "full"]), []
+    with pytest.raises(InputError, match="the disk is full"):
+        run_batch(jobs, tmp_path / "out", workers=0, scheduler=scheduler, runner=RUNNER, broken_off=told.append)
+    (outcome,) = told
+    last = outcome.records[jobs[1].name]
+    assert (last["status"], last["message"]) == ("not run", "the batch was broken off before; run again")
+    assert ends(outcome.records) in ({"made": 1, "not run": 1}, {"not run": 2}) and outcome.before == 0
+    assert not (tmp_path / "out/jobs").exists() or len(list((tmp_path / "out/jobs").iterdir())) == 1
 
 
 def test_the_example_of_the_page_runs(tmp_path: Path, scheduler: str) -> None:
@@ -173,12 +201,6 @@ def test_the_example_of_the_page_runs(tmp_path: Path, scheduler: str) -> None:
     outcome = run(list(plan.jobs), tmp_path / "out", scheduler)
     assert ends(outcome.records) == {"made": 18}
     assert all(f"`{status}`" in page for status in STATUSES)
-
-
-def test_a_full_disk_ends_the_batch(tmp_path: Path, scheduler: str) -> None:
-    with pytest.raises(InputError, match="the disk is full; free some space"):
-        run([quick_job(tmp_path, "full"), quick_job(tmp_path, "make")], tmp_path / "out", scheduler)
-    assert not (tmp_path / "out/jobs").exists() or len(list((tmp_path / "out/jobs").iterdir())) == 1
 
 
 def test_a_cluster_that_will_not_do_is_told(tmp_path: Path, scheduler: str, monkeypatch: pytest.MonkeyPatch) -> None:

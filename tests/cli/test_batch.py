@@ -14,6 +14,7 @@ from batches import wait_for
 
 from skinfab.cli.main import main
 
+CUBE = Path(__file__).parents[2] / "meshes/cube.obj"
 SKINFAB = Path(sys.executable).with_name("skinfab")
 
 
@@ -29,11 +30,13 @@ def test_interrupted_then_done_with_a_bad_mesh_among_them(tmp_path: Path) -> Non
     printed, complaint = work.communicate(timeout=60)
     assert (work.returncode, printed, complaint) == (130, "", "skinfab: interrupted; nothing half-written was left\n")
     assert [path.suffix for path in (out / ".under-way").iterdir()] == [".lock"] and not (out / "jobs").exists()
+    broken = json.loads((out / "batch.json").read_text())
+    assert broken["counts"]["not run"] == 2 and f'href="jobs/{broken["jobs"][0]["job"]}' not in (out / "batch.html").read_text()
     assert not any(Path(f"/proc/{pid}").exists() for pid in begun(out))
 
     done = subprocess.run([*words, "--json"], cwd=tmp_path, capture_output=True, text=True, timeout=300)
     assert done.returncode == 1
-    assert done.stderr == "warning: 1 of 2 jobs have no result; out/batch.html says why\n"
+    assert done.stderr == "warning: 1 of 2 jobs has no result; out/batch.html says why\n"
     found = json.loads(done.stdout)
     assert found == json.loads((out / "batch.json").read_text())
     assert found["done_before"] == 0 and {k: n for k, n in found["counts"].items() if n} == {"made": 1, "failed": 1}
@@ -62,6 +65,7 @@ def begun(out: Path) -> list[int]:
         (["none.toml"], "", 1, "cannot read none.toml"),
         (["plan.toml"], 'meshes = ["*.obj"]', 1, "plan.toml, line 1, meshes: '*.obj' matches no file"),
         (["plan.toml"], 'meshes = ["plan.toml"]\n[settings]\nseeds = 1', 1, "line 3, [settings] seeds: it is not known here; did you"),
+        (["plan.toml", "-o", "plan.toml/"], f'meshes = ["{CUBE}"]', 1, "plan.toml: it is a file, not a folder; choose another"),
     ],
 )  # fmt: skip
 def test_wrong_input_gets_one_line(
@@ -75,6 +79,6 @@ def test_wrong_input_gets_one_line(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     (tmp_path / "plan.toml").write_text(text)
-    assert main(["batch", *words, "-o", "out"]) == status
+    assert main(["batch", "-o", "out", *words]) == status
     assert says in capfd.readouterr().err.splitlines()[-1]
     assert os.listdir(tmp_path) == ["plan.toml"]
