@@ -149,7 +149,8 @@ def _done(home: Home, jobs: Sequence[Job]) -> tuple[dict[str, dict[str, Any]], l
         else:
             done[job.name] = record
     others = len(there - {job.name for job in jobs})
-    place, notes = home.folder / "jobs", []
+    place = home.folder / "jobs"
+    notes: list[str] = []
     if others:
         they = f"{others} results in {place} are" if others > 1 else f"1 result in {place} is"
         notes.append(f"{they} of other meshes or settings and left alone")
