@@ -9,19 +9,19 @@ LONGEST = 1500
 class SkinfabError(Exception):
     """Base of every error a user is meant to read: one line, no traceback.
 
-    What it quotes of a file may be anything: line ends, what steers a terminal and halves of characters are shown as escapes,
-    and of thousands of characters the first and the last.
+    What it quotes of a file may be anything: lines are joined, what steers a terminal and halves of characters are shown as
+    escapes, and of thousands of characters the first and the last.
 
     Examples
     --------
     >>> str(InputError("no column 'a\\nb\\x1b[2J'")), len(str(InputError("9" * 5000)))
-    ("no column 'a\\\\nb\\\\x1b[2J'", 1500)
+    ("no column 'a b\\\\x1b[2J'", 1500)
     """
 
     exit_status = 1
 
     def __str__(self) -> str:
-        text = super().__str__()
+        text = " ".join(line.strip() for line in super().__str__().splitlines())
         if not text.isprintable():
             text = "".join(each if each.isprintable() else repr(each)[1:-1] for each in text)
         if len(text) > LONGEST:

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 if TYPE_CHECKING:
     from skinfab.skin import Skin
 
@@ -15,6 +13,8 @@ _MANY_PIECES = 20
 
 def many_pieces(skin: Skin, *, wrapped: bool) -> list[str]:
     """What to do about a closed object that has come apart into very many pieces: a sentence, or none."""
+    import numpy as np
+
     from skinfab.seams.cut import open_pieces
     from skinfab.seams.rules import edge_mask
 
