@@ -51,11 +51,11 @@ def dumb_bell(waist: float) -> Mesh:
 
 @both
 def test_neck_collapse(aim: Aim) -> None:
-    """A disk, no flip, no overlap, d within the bound: and its halves hang on 2 mm of silicone, which tears as it leaves the mould."""
+    """A disk, no flip, no overlap, d within the bound: and its halves hang on less silicone than goes round the waist, which tears."""
     mesh = dumb_bell(0.5)
     ((piece, verdict),) = find_seams(mesh, Limits(), aim=aim).pieces
     neck = find_neck(piece.F, verdict.UV, 4.0, topology=piece.topology)
-    assert verdict.accepted and neck is not None and neck.width < 2.5
+    assert verdict.accepted and neck is not None and neck.width < np.pi  # all round the waist
     seams = find_seams(mesh, LIMITS, aim=aim)
     assert accepted(mesh, seams) and len(seams.pieces) == 2
     wide = dumb_bell(2.5)  # 15 mm round the waist hold
