@@ -6,7 +6,7 @@ from shapes import grid
 
 from skinfab.errors import InputError
 from skinfab.mesh.model import Mesh
-from skinfab.seams.auto import find_seams
+from skinfab.seams.auto import Aim, find_seams
 from skinfab.seams.edit import lock
 from skinfab.seams.enclosed import enclosed_pieces
 from skinfab.seams.judge import Limits
@@ -49,9 +49,9 @@ def test_only_what_locks_part_off_all_round() -> None:
 
 
 @pytest.mark.parametrize("aim", ["fewest", "usual", "simplest"])
-def test_locked_and_forbidden_at_once_is_refused(aim: str) -> None:
+def test_locked_and_forbidden_at_once_is_refused(aim: Aim) -> None:
     mesh = sheet(18).mesh
     both = np.isin(np.arange(len(mesh.topology.E)), mesh.topology.edge_ids(np.array([[8, 9], [9, 10]])))
     rules = EdgeRules(np.ones(len(both)), both, both)
     with pytest.raises(InputError, match=r"8-9, 9-10: locked, which stays a seam, and forbidden.*unlock it or allow it"):
-        find_seams(mesh, LIMITS, rules=rules, aim=aim)  # type: ignore[arg-type]
+        find_seams(mesh, LIMITS, rules=rules, aim=aim)

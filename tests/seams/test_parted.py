@@ -7,7 +7,7 @@ import pytest
 from shapes import grid
 
 from skinfab.mesh.model import Mesh
-from skinfab.seams.auto import find_seams
+from skinfab.seams.auto import Aim, find_seams
 from skinfab.seams.judge import Limits, Parted
 from skinfab.seams.parted import carried_parted, parted_text
 from skinfab.seams.partial import auto_cut
@@ -33,26 +33,26 @@ def dumbbell() -> Mesh:
 
 
 @aims
-def test_the_bed(aim: str) -> None:
+def test_the_bed(aim: Aim) -> None:
     small = replace(LIMITS, size=(45.0, 30.0))
-    found = find_seams(sheet(), small, aim=aim)  # type: ignore[arg-type]
+    found = find_seams(sheet(), small, aim=aim)
     assert len(found.pieces) == 2
     (said,) = parted_text(found.pieces, small)
     assert said.startswith("2 of the pieces are parts of what does not fit the bed") and "(45 x 30 mm); 1 piece would do" in said
-    assert parted_text(find_seams(sheet(), LIMITS, aim=aim).pieces, LIMITS) == []  # type: ignore[arg-type]
+    assert parted_text(find_seams(sheet(), LIMITS, aim=aim).pieces, LIMITS) == []
 
 
 @aims
-def test_a_neck(aim: str) -> None:
+def test_a_neck(aim: Aim) -> None:
     narrow = replace(LIMITS, neck=4.0)
     mesh = dumbbell()
-    found = find_seams(mesh, narrow, aim=aim)  # type: ignore[arg-type]
+    found = find_seams(mesh, narrow, aim=aim)
     assert len(found.pieces) == 2
     (said,) = parted_text(found.pieces, narrow)
     assert said.startswith("2 of the pieces are parted at a neck of 3 mm, as 4 mm survive") and "1 piece would do if" in said
-    assert len(find_seams(mesh, LIMITS, aim=aim).pieces) == 1  # type: ignore[arg-type]
+    assert len(find_seams(mesh, LIMITS, aim=aim).pieces) == 1
     skin = Skin(mesh, Source("a.obj", "0" * 64, "mm", 1.0), np.zeros((0, 2), dtype=np.int64), ())
-    assert auto_cut(skin, narrow, aim=aim).notes == (said,)  # type: ignore[arg-type]
+    assert auto_cut(skin, narrow, aim=aim).notes == (said,)
 
 
 def test_what_would_not_be_flat_either_is_no_promise() -> None:
