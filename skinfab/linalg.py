@@ -81,7 +81,7 @@ class Cholesky:
         self.factorisations = self.solves = 0
         self._matrix = spmatrix(matrix(lower.data), matrix(lower.rows), matrix(lower.columns), (lower.n, lower.n))
         cholmod.options["supernodal"] = 2
-        self._factor = cholmod.symbolic(self._matrix)
+        self._factor = None
         self._numeric()
 
     def refactor(self, data: NDArray[np.float64]) -> None:
@@ -91,13 +91,26 @@ class Cholesky:
 
     def solve(self, b: NDArray[np.float64]) -> NDArray[np.float64]:
         """x of A x = b; `b` is (n,) or (n, k)."""
+        if self._factor is None:
+            raise SkinfabError("the factor was taken apart; factor again before solving")
         self.solves += 1
         x = matrix(np.asfortranarray(b.reshape(len(b), -1)))
         cholmod.solve(self._factor, x)
         return np.array(x).reshape(b.shape)
 
+    def taken_apart(self) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]:
+        """The factor itself, which must be made anew before this solves again: the order (n,) in which the unknowns were taken,
+        and the lower triangle L of the matrix in that order, L L^T: where columns begin (n + 1,), rows and values, in columns by row."""
+        order = matrix(np.arange(self._matrix.size[0], dtype=np.float64))
+        cholmod.solve(self._factor, order, sys=7)  # permutes, no more
+        indptr, rows, values = cholmod.getfactor(self._factor).CCS
+        self._factor = None
+        return np.array(order).ravel().astype(np.int64), np.array(indptr).ravel(), np.array(rows).ravel(), np.array(values).ravel()
+
     def _numeric(self) -> None:
         self.factorisations += 1
+        if self._factor is None:
+            self._factor = cholmod.symbolic(self._matrix)
         try:
             cholmod.numeric(self._matrix, self._factor)
         except ArithmeticError as fault:

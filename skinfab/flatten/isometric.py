@@ -19,8 +19,9 @@ from skinfab.errors import InputError
 from skinfab.flatten._barrier import barrier_energy, barrier_gradient, barrier_hessian, first_crossing, near_pairs
 from skinfab.flatten._dirichlet import assemble, energies, extremes, first_collapse, gradient_of, vertex_pattern
 from skinfab.flatten.distortion import local_triangles, shaped_areas
+from skinfab.flatten.flexibility import Flexibility
 from skinfab.flatten.laplacian import mollified_lengths
-from skinfab.linalg import Cholesky
+from skinfab.linalg import Cholesky, LowerTriangle
 from skinfab.tolerances import MOLLIFY, NEWTON_DECREASE, NEWTON_RIDGE
 
 FloatArray = NDArray[np.float64]
@@ -184,11 +185,11 @@ class IsometricSolver:
         self._hold(data)
         return csc_array((data, self._indices, self._indptr), shape=(2 * self.n, 2 * self.n)), gradient
 
-    def factored(self, UV: FloatArray, apart: Apart | None = None) -> Cholesky:
-        """The factor of the Hessian at a layout without flips, with the barrier's where there is one; the next refinement ends it."""
-        self._step(np.ascontiguousarray(UV), apart, renew=True)
+    def flexibility(self, UV: FloatArray, apart: Apart | None = None) -> Flexibility:
+        """Inverse of the Hessian at a layout without flips, with the barrier's where there is one."""
+        self._renew(np.ascontiguousarray(UV), apart)
         assert self._cholesky is not None
-        return self._cholesky
+        return Flexibility.of(self._cholesky)
 
     def descend(self, UV: FloatArray, step: FloatArray, slope: float) -> tuple[FloatArray, float]:
         """`UV` as far along `step` (n, 2) as d falls by its share of `slope` and nothing flips, and the mean d there."""
@@ -201,20 +202,23 @@ class IsometricSolver:
 
     def _step(self, u: FloatArray, apart: Apart | None, *, renew: bool) -> tuple[FloatArray, float]:
         """Downhill by the Hessian here (`renew`) or by the last that was factored, and the energy's slope along it."""
-        if renew and apart:
-            self._couple(u, apart)
-        if renew or self._cholesky is None:
-            data, gradient = assemble(u, self.F, self.gradients, self.weight, self._place, self._indptr)
-            if apart:
-                barrier_hessian(u, self._pairs, self._pair_place, apart.reach, apart.weight, self._indptr, data)
-            self._factor(data)
-        else:
-            gradient = gradient_of(u, self.F, self.gradients, self.weight)
+        renew = renew or self._cholesky is None
+        gradient = self._renew(u, apart) if renew else gradient_of(u, self.F, self.gradients, self.weight)
         if apart:
             barrier_gradient(u, near_pairs(u, apart.loop, apart.reach), apart.reach, apart.weight, gradient)
         assert self._cholesky is not None
         step = self._cholesky.solve(-gradient)
         return step.reshape(-1, 2), float(gradient @ step)
+
+    def _renew(self, u: FloatArray, apart: Apart | None) -> FloatArray:
+        """The Hessian here factored; the gradient of d alone."""
+        if apart:
+            self._couple(u, apart)
+        data, gradient = assemble(u, self.F, self.gradients, self.weight, self._place, self._indptr)
+        if apart:
+            barrier_hessian(u, self._pairs, self._pair_place, apart.reach, apart.weight, self._indptr, data)
+        self._factor(data)
+        return gradient
 
     def _hold(self, data: FloatArray) -> None:
         # The rigid motions cost nothing: a ridge far below the stiffness fixes them.
@@ -237,7 +241,8 @@ class IsometricSolver:
     def _factor(self, data: FloatArray) -> None:
         self._hold(data)
         if self._cholesky is None:
-            self._cholesky = Cholesky(csc_array((data, self._indices, self._indptr), shape=(2 * self.n, 2 * self.n)))
+            columns = np.repeat(np.arange(2 * self.n), np.diff(self._indptr))
+            self._cholesky = Cholesky(LowerTriangle(data, self._indices, columns, 2 * self.n))
         else:
             self._cholesky.refactor(data)
 

@@ -14,7 +14,6 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
-from skinfab.linalg import Cholesky
 from skinfab.seams.sheet import Sheet
 from skinfab.tolerances import NEWTON_RIDGE
 
@@ -53,32 +52,23 @@ def fringes(sheet: Sheet, *, most: int) -> list[Fringe]:
     return found
 
 
-def closing_costs(sheet: Sheet, factor: Cholesky, ends: Sequence[Fringe]) -> list[FloatArray]:
+def closing_costs(sheet: Sheet, ends: Sequence[Fringe]) -> list[FloatArray]:
     """By how much the mean d rises, to second order, when each seam's end is closed: (k,), for every number of edges."""
-    loads = np.zeros((2 * len(sheet.origin), 2 * sum(len(end.edges) for end in ends)), order="F")
-    pairs = np.concatenate([end.pairs for end in ends])
-    _put_pairs(loads, pairs)
-    moved = np.asfortranarray(factor.solve(loads))
-    found, column = [], 0
+    found = []
     for end in ends:
         gap = (sheet.UV[end.pairs[:, 0]] - sheet.UV[end.pairs[:, 1]]).ravel()
-        found.append(_rises(moved, end.pairs, column, gap))
-        column += 2 * len(end.edges)
+        found.append(_rises(sheet.flexibility.energy(*_loads(end.pairs)), gap))
     return found
 
 
-def closing_step(sheet: Sheet, factor: Cholesky, end: Fringe, count: int) -> FloatArray:
+def closing_step(sheet: Sheet, end: Fringe, count: int) -> FloatArray:
     """The layout moved so that the first `count` edges of a seam's end are closed, at the least rise of d, (p, 2) mm."""
     pairs = end.pairs[:count]
-    loads = np.zeros((2 * len(sheet.origin), 2 * count), order="F")
-    _put_pairs(loads, pairs)
-    moved = np.asarray(factor.solve(loads))
-    a, b = pairs.T
-    gap = (sheet.UV[a] - sheet.UV[b]).ravel()
-    rows_a, rows_b = np.stack([2 * a, 2 * a + 1], axis=1).ravel(), np.stack([2 * b, 2 * b + 1], axis=1).ravel()
-    flexibility = moved[rows_a] - moved[rows_b]
+    at, loads = _loads(pairs)
+    gap = (sheet.UV[pairs[:, 0]] - sheet.UV[pairs[:, 1]]).ravel()
+    flexibility = sheet.flexibility.energy(at, loads)
     flexibility[np.diag_indices(2 * count)] += NEWTON_RIDGE * np.trace(flexibility) / (2 * count)
-    return sheet.UV - (moved @ np.linalg.solve(flexibility, gap)).reshape(-1, 2)
+    return sheet.UV - sheet.flexibility.displacement(at, loads @ np.linalg.solve(flexibility, gap)).reshape(-1, 2)
 
 
 @numba.njit(cache=True)
@@ -104,23 +94,22 @@ def _fringes(loop: IntArray, origin: IntArray, most: int) -> tuple[IntArray, Int
     return start[: ends + 1], pairs[:filled]
 
 
-@numba.njit(cache=True)
-def _put_pairs(loads: FloatArray, pairs: IntArray) -> None:
-    for k in range(pairs.shape[0]):
-        for x in range(2):
-            loads[2 * pairs[k, 0] + x, 2 * k + x] = 1.0
-            loads[2 * pairs[k, 1] + x, 2 * k + x] = -1.0
+def _loads(pairs: IntArray) -> tuple[IntArray, FloatArray]:
+    """Rows, and on them forces that draw each pair together, along x and along y."""
+    vertices, which = np.unique(pairs, return_inverse=True)
+    loads = np.zeros((2 * len(vertices), 2 * len(pairs)))
+    one, other = which.reshape(-1, 2).T
+    k = 2 * np.arange(len(pairs))
+    for x in range(2):
+        loads[2 * one + x, k + x] += 1.0
+        loads[2 * other + x, k + x] -= 1.0
+    return np.stack([2 * vertices, 2 * vertices + 1], axis=1).ravel(), loads
 
 
 @numba.njit(cache=True)
-def _rises(moved: FloatArray, pairs: IntArray, column: int, gap: FloatArray) -> FloatArray:
-    """Half of gap^T flexibility^-1 gap for the first pair, the first two, and so on: Cholesky, row by row."""
+def _rises(A: FloatArray, gap: FloatArray) -> FloatArray:
+    """Half of gap^T A^-1 gap, of the flexibility A, for the first pair, the first two, and so on: Cholesky, row by row."""
     n = gap.shape[0]
-    A = np.empty((n, n))
-    for k in range(pairs.shape[0]):
-        for x in range(2):
-            for c in range(n):
-                A[2 * k + x, c] = moved[2 * pairs[k, 0] + x, column + c] - moved[2 * pairs[k, 1] + x, column + c]
     ridge = NEWTON_RIDGE * np.trace(A) / n
     L, share, rise = np.zeros((n, n)), np.zeros(n), np.full(n // 2, np.inf)
     total = 0.0

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skinfab.seams.outlook import dart_ways
-from skinfab.seams.release import Way, held_releases, releases, right_of
+from skinfab.seams.release import Way, held_releases, releases, right_of, sides_of
 from skinfab.seams.sheet import Sheet, carried, keep_apart, lay_apart, refined, sheet_of
 
 FloatArray = NDArray[np.float64]
@@ -96,11 +96,13 @@ def best_darts(now: Sheet, bound: float, *, power: float = LENGTH_POWER) -> list
         def worth(gains: list[FloatArray], ways: list[Way]) -> list[FloatArray]:
             return [_worth(now, way, gain, wanted, power) for way, gain in zip(ways, gains, strict=True)]
 
-        rough = [value.max() for value in worth(held_releases(now.solver, now.UV, now, ways), ways)]
-        ways = [ways[k] for k in np.argsort(rough)[::-1][: times * _SOLVED] if rough[k] > 0]
+        sides = sides_of(now.solver, now.UV, now, ways)
+        rough = [value.max() for value in worth(held_releases(sides), ways)]
+        chosen = [k for k in np.argsort(rough)[::-1][: times * _SOLVED] if rough[k] > 0]
+        ways, sides = [ways[k] for k in chosen], [sides[k] for k in chosen]
         if not ways:
             continue
-        values = worth(releases(now.solver, now.UV, now, ways, apart=now.apart), ways)
+        values = worth(releases(now.flexibility, sides), ways)
         best = [k for k in np.argsort([-value.max() for value in values], kind="stable") if values[k].max() > 0]
         if best:
             return [_up_to(ways[k], int(np.argmax(values[k]))) for k in best]

@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from skinfab.linalg import Cholesky
 from skinfab.seams.closing import Fringe, closing_costs, closing_step, fringes
 from skinfab.seams.growth import grow
 from skinfab.seams.sheet import Sheet, keep_apart, refined, sheet_of
@@ -61,11 +60,11 @@ def trim(now: Sheet, bound: float, *, p99: float = np.inf) -> Sheet:
     """
     failed: set[tuple[int, int]] = set()
     while True:
-        factor, found = _closings(now)
+        found = _closings(now)
         left = _FORETOLD * (bound - now.mean)
         found = sorted((c for c in found if c.cost <= left and c.name not in failed), key=lambda c: -c.length)
         for closing in found[:_TRIED]:
-            closed = _closed(now, factor, closing)
+            closed = _closed(now, closing)
             if closed is not None and closed.within(bound, p99):
                 now = closed
                 break
@@ -97,12 +96,11 @@ def exchange(now: Sheet, bound: float, *, p99: float = np.inf, rounds: int, repo
     for k in range(rounds):
         if report:
             report(k / rounds)
-        factor, found = _closings(now)
-        found = [c for c in found if c.name[0] not in failed and c.length > _WORTH_MOVING * now.surface.size]
+        found = [c for c in _closings(now) if c.name[0] not in failed and c.length > _WORTH_MOVING * now.surface.size]
         if not found:
             break
         worst = min(found, key=lambda c: c.cost / c.length)
-        closed = _closed(now, factor, worst)
+        closed = _closed(now, worst)
         other = None if closed is None else grow(closed, bound, p99=p99, power=_LENGTH_POWER, shorter_than=now.length)
         if other is None or not other.within(bound, p99):
             failed.add(worst.name[0])
@@ -111,26 +109,23 @@ def exchange(now: Sheet, bound: float, *, p99: float = np.inf, rounds: int, repo
     return now
 
 
-def _closings(now: Sheet) -> tuple[Cholesky, list[_Closing]]:
-    factor = now.solver.factored(now.UV, now.apart)
+def _closings(now: Sheet) -> list[_Closing]:
     ends = fringes(now, most=_EDGES)
-    if not ends:
-        return factor, []
     found = []
-    for end, costs in zip(ends, closing_costs(now, factor, ends), strict=True):
+    for end, costs in zip(ends, closing_costs(now, ends), strict=True):
         length = np.cumsum(now.surface.lengths[end.edges])
         found += [_Closing(end, k + 1, float(costs[k]), float(length[k])) for k in range(len(costs)) if np.isfinite(costs[k])]
-    return factor, found
+    return found
 
 
-def _closed(now: Sheet, factor: Cholesky, closing: _Closing) -> Sheet | None:
+def _closed(now: Sheet, closing: _Closing) -> Sheet | None:
     """At its least d after closing; None where that is no disk, or the layout cannot be begun."""
     cut = now.cut.copy()
     cut[closing.fringe.edges[: closing.count]] = False
     closed = sheet_of(now.surface, cut)
     if closed is None:
         return None
-    moved = closing_step(now, factor, closing.fringe, closing.count)
+    moved = closing_step(now, closing.fringe, closing.count)
     uv = np.empty((len(closed.origin), 2))
     uv[closed.F.ravel()] = moved[now.F.ravel()]
     if not closed.solver.best_scale(uv)[1] > 0:

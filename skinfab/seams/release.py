@@ -9,15 +9,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
-from typing import Protocol
+from functools import cache, cached_property
+from typing import NamedTuple, Protocol
 
 import numba
 import numpy as np
 from numpy.typing import NDArray
 
 from skinfab.flatten._dirichlet import assemble, vertex_pattern
-from skinfab.flatten.isometric import Apart, IsometricSolver
+from skinfab.flatten.flexibility import Flexibility
+from skinfab.flatten.isometric import IsometricSolver
 from skinfab.tolerances import NEWTON_RIDGE
 
 FloatArray = NDArray[np.float64]
@@ -55,14 +56,37 @@ class Way:
     @cached_property
     def ends(self) -> IntArray:
         """Places along `vertices` where a dart may end: all, or of many so many, evenly."""
-        most = len(self.edges)
-        return np.unique(np.round(np.linspace(0, most, min(most, _ENDS) + 1)).astype(np.int64))[1:]
+        return _ends(len(self.edges))
 
 
-def releases(
-    solver: IsometricSolver, UV: FloatArray, topology: Sides, ways: Sequence[Way], *, apart: Apart | None = None
-) -> list[FloatArray]:
-    """By how much darts along each way lower the mean d, to second order.
+@cache
+def _ends(most: int) -> IntArray:
+    return np.unique(np.round(np.linspace(0, most, min(most, _ENDS) + 1)).astype(np.int64))[1:]
+
+
+class Side(NamedTuple):
+    """One side of a way, moving by itself.
+
+    Parameters
+    ----------
+    rows : (r,) int64
+        Unknowns of the layout that meet it.
+    forces : (r, k) float64
+        On these, for each of its own unknowns.
+    stiffness : (k, k) float64
+        Against its moving, all else held.
+    gradient : (k,) float64
+        Of the mean d.
+    """
+
+    rows: IntArray
+    forces: FloatArray
+    stiffness: FloatArray
+    gradient: FloatArray
+
+
+def sides_of(solver: IsometricSolver, UV: FloatArray, topology: Sides, ways: Sequence[Way]) -> list[Side]:
+    """The right side of each way.
 
     Parameters
     ----------
@@ -72,43 +96,36 @@ def releases(
     topology : Sides
         Of the piece.
     ways : sequence of Way
-    apart : Apart, optional
-        What keeps the layout from covering itself; it is held as it is.
+    """
+    UV = np.ascontiguousarray(UV)
+    sides = []
+    for way in ways:
+        faces = right_of(way.vertices, way.edges, solver.F, topology.FE, topology.EF)
+        sides.append(Side(*_other_side(way.vertices, way.ends, faces, UV, solver.F, solver.gradients, solver.weight)))
+    return sides
+
+
+def releases(flexibility: Flexibility, sides: Sequence[Side]) -> list[FloatArray]:
+    """By how much darts along each way lower the mean d, to second order.
+
+    Parameters
+    ----------
+    flexibility : Flexibility
+        Of the layout; what keeps it from covering itself is held as it is.
+    sides : sequence of Side
+        Of `sides_of`.
 
     Returns
     -------
     list of (k,) float64
         For the dart to each of the way's `ends`; not falling.
     """
-    factor = solver.factored(UV, apart)
-    sides = _sides(solver, UV, topology, ways)
-    loads = np.zeros((2 * solver.n, sum(side.shape[1] for _, side, _, _ in sides)), order="F")
-    column = 0
-    for rows, side, _, _ in sides:
-        _put(loads, rows, side, column)
-        column += side.shape[1]
-    moved = np.asfortranarray(factor.solve(loads))
-    found, column = [], 0
-    for rows, side, stiff, force in sides:
-        found.append(_decreases(stiff - _taken(moved, rows, side, column), force))
-        column += side.shape[1]
-    return found
+    return [_decreases(side.stiffness - flexibility.energy(side.rows, side.forces), side.gradient) for side in sides]
 
 
-def held_releases(solver: IsometricSolver, UV: FloatArray, topology: Sides, ways: Sequence[Way]) -> list[FloatArray]:
+def held_releases(sides: Sequence[Side]) -> list[FloatArray]:
     """As `releases`, if nothing moved but one side of the dart: less than is gained in truth, and told with no factorisation."""
-    return [_decreases(stiff, force) for _, _, stiff, force in _sides(solver, UV, topology, ways)]
-
-
-def _sides(
-    solver: IsometricSolver, UV: FloatArray, topology: Sides, ways: Sequence[Way]
-) -> list[tuple[IntArray, FloatArray, FloatArray, FloatArray]]:
-    UV = np.ascontiguousarray(UV)
-    sides = []
-    for way in ways:
-        faces = right_of(way.vertices, way.edges, solver.F, topology.FE, topology.EF)
-        sides.append(_other_side(way.vertices, way.ends, faces, UV, solver.F, solver.gradients, solver.weight))
-    return sides
+    return [_decreases(side.stiffness, side.gradient) for side in sides]
 
 
 @numba.njit(cache=True)
@@ -136,26 +153,6 @@ def _decreases(stiffness: FloatArray, force: FloatArray) -> FloatArray:
         total += share[i] ** 2 / 2
         decrease[i // 2] = total
     return decrease
-
-
-@numba.njit(cache=True)
-def _put(loads: FloatArray, rows: IntArray, side: FloatArray, column: int) -> None:
-    for c in range(side.shape[1]):
-        for r in range(rows.shape[0]):
-            loads[rows[r], column + c] = side[r, c]
-
-
-@numba.njit(cache=True)
-def _taken(moved: FloatArray, rows: IntArray, side: FloatArray, column: int) -> FloatArray:
-    """What the rest gives way: side^T moved."""
-    k = side.shape[1]
-    taken = np.zeros((k, k))
-    for c in range(k):
-        for r in range(rows.shape[0]):
-            x = moved[rows[r], column + c]
-            for b in range(k):
-                taken[b, c] += side[r, b] * x
-    return taken
 
 
 @numba.njit(cache=True)

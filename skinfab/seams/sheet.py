@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from skinfab.flatten.bijective import flatten_bijective
 from skinfab.flatten.disk import flatten_isometric
 from skinfab.flatten.distortion import quantiles
+from skinfab.flatten.flexibility import Flexibility
 from skinfab.flatten.isometric import Apart, IsometricSolver
 from skinfab.flatten.laplacian import intrinsic
 from skinfab.mesh.model import Mesh
@@ -147,6 +148,11 @@ class Sheet:
     def is_simple(self) -> bool:
         """Whether the boundary neither crosses nor touches itself: nothing is covered twice."""
         return bool(shapely.LinearRing(self.UV[self.loop]).is_simple)
+
+    @cached_property
+    def flexibility(self) -> Flexibility:
+        """Of the layout, and of what keeps it apart."""
+        return self.solver.flexibility(self.UV, self.apart)
 
     def within(self, mean: float, p99: float) -> bool:
         """Whether it keeps to both bounds."""

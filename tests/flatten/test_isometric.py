@@ -6,7 +6,7 @@ import igl
 import numpy as np
 import pytest
 import shapes
-from hypothesis import assume, given, settings
+from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
 from skinfab import linalg
@@ -144,10 +144,11 @@ def test_nothing_collapses_along_a_shift_or_a_swelling() -> None:
 
 @few
 @given(seeds)
+@example(418)  # one of a thousand takes 69 steps; others of such noise at most 33
 def test_never_flips_and_always_gets_better(seed: int) -> None:
     V, F = shapes.random_disk(seed, 60, noise=0.3)
     start = tutte_embedding(V, F)
-    result = IsometricSolver(V, F).refine(start)
+    result = IsometricSolver(V, F).refine(start, max_steps=1000)
     assert (singular_values(V, F, result.UV) > 0).all()
     assert (np.diff(result.energy) < 0).all() and result.converged
     assert result.energy[0] == pytest.approx(measure(V, F, start).mean, rel=1e-9)

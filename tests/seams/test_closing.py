@@ -49,7 +49,7 @@ def test_as_much_as_it_costs_in_truth(angle: float, bound: float) -> None:
     sheet = grown(angle, bound)
     d = float(sheet.d @ sheet.solver.weight)
     ends = fringes(sheet, most=6)
-    told = closing_costs(sheet, sheet.solver.factored(sheet.UV), ends)
+    told = closing_costs(sheet, ends)
     assert ends
     for end, costs in zip(ends, told, strict=True):
         assert (np.diff(costs) >= 0).all() and costs[0] >= 0
@@ -63,7 +63,7 @@ def test_as_much_as_it_costs_in_truth(angle: float, bound: float) -> None:
 def test_the_step_closes_the_gap() -> None:
     sheet = grown(1.0, 4.003)
     (end, *_) = fringes(sheet, most=5)
-    moved = closing_step(sheet, sheet.solver.factored(sheet.UV), end, len(end.edges))
+    moved = closing_step(sheet, end, len(end.edges))
     a, b = end.pairs.T
     gap = np.linalg.norm(sheet.UV[a] - sheet.UV[b], axis=1).max()
     assert gap > 1e-3 and np.linalg.norm(moved[a] - moved[b], axis=1).max() < 1e-4 * gap
