@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from gcode.printer import load_printer
-from skinfab.bench.charts import png
+from skinfab.bench.marked import png
 from skinfab.files import atomic_write
 
 _COLOURS = ("#0b6e4f", "#b5451b", "#2b5c9e")

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from calibration.control.protocols import PAPER_DEG
-from skinfab.bench.charts import png
+from skinfab.bench.marked import png
 from skinfab.files import atomic_write
 
 _COLOURS = {"p": "#b5451b", "branches": "#2b5c9e", "full": "#0b6e4f"}

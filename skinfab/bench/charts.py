@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from skinfab.bench.contestants import DEFAULT
+from skinfab.bench.marked import png
 from skinfab.bench.refinement import NEWTON
 from skinfab.bench.words import SAME_D, Table, pareto_front
 from skinfab.files import atomic_write
@@ -129,10 +129,3 @@ def _name(axes: Axes, rows: Table) -> None:
 
 #: Where a name may stand from its point, in points: beside it, then farther and farther below and above.
 _SPOTS = [(dx, sign * dy) for dy in range(0, 200, 9) for sign in (-1, 1) for dx in (9, -9)]
-
-
-def png(figure: Figure) -> bytes:
-    """The figure as a PNG file."""
-    drawn = io.BytesIO()
-    figure.savefig(drawn, format="png")
-    return drawn.getvalue()

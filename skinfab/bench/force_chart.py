@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from skinfab.bench.charts import png
 from skinfab.bench.force import AVERAGES, DEFAULT
+from skinfab.bench.marked import png
 from skinfab.files import atomic_write
 from skinfab.fingertip.force.contact import LEAST_FORCE_N
 

@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from skinfab.bench.charts import png
 from skinfab.bench.gravity import USUAL, paper_errors
+from skinfab.bench.marked import png
 from skinfab.files import atomic_write
 
 _COLOURS = {"published": "#D55E00", "offset fitted": "#0072B2", "hand weighed": "#009E73"}

@@ -7,7 +7,7 @@ from pathlib import Path
 from textwrap import fill
 from typing import Any
 
-from skinfab.bench.charts import png
+from skinfab.bench.marked import png
 from skinfab.files import atomic_write
 from skinfab.fingertip.force.liquid import FALSE_ALARM
 

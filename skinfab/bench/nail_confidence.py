@@ -104,7 +104,7 @@ def draw(table: Sequence[Mapping[str, Any]], path: Path) -> None:
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    from skinfab.bench.charts import png
+    from skinfab.bench.marked import png
     from skinfab.files import atomic_write
 
     tests = list(dict.fromkeys(row["test"] for row in table))

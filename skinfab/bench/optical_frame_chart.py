@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from skinfab.bench.charts import png
+from skinfab.bench.marked import png
 from skinfab.bench.optical_frame import DEFAULT, LINEAR, PUBLISHED, WHOLE
 from skinfab.files import atomic_write
 

@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from skinfab.bench.charts import png
 from skinfab.bench.framings import DEFAULT
+from skinfab.bench.marked import png
 from skinfab.files import atomic_write
 
 _COLOURS = {"ASCII": "#b5451b", "ASCII + sum": "#8a6d00", "sync + length + CRC-16": "#2b5c9e", DEFAULT: "#0b6e4f"}

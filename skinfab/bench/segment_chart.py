@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from skinfab.bench.charts import png
+from skinfab.bench.marked import png
 from skinfab.files import atomic_write
 from skinfab.seams.judge import Limits
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from skinfab.bench.charts import png
+from skinfab.bench.marked import png
 from skinfab.files import atomic_write
 from skinfab.flatten.simplified import SHARE
 from skinfab.tolerances import SIMPLIFY_EFFECT
