@@ -58,6 +58,8 @@ class Row:
     overlap_mm2 : float
     seconds : float
         Of the process itself, from the mesh to the finished flat pieces; the least of the repeats.
+    peak_mb : float
+        By how much memory rose above what it was before; NaN where the system does not tell.
     repeats : int
     """
 
@@ -73,6 +75,7 @@ class Row:
     flipped: int
     overlap_mm2: float
     seconds: float
+    peak_mb: float
     repeats: int
 
 
@@ -118,7 +121,7 @@ def run(
         A mesh cannot be used, or a file not be written.
     """
     from skinfab.bench.segment_chart import draw
-    from skinfab.bench.segment_growth import follow
+    from skinfab.bench.segment_growth import follow, growth_sentence
     from skinfab.bench.segment_words import sentence
     from skinfab.files import atomic_write
 
@@ -138,8 +141,9 @@ def run(
     # From here on only what the table holds is used, so that chart and sentence cannot say anything else.
     table = read_csv(folder / "segment.csv")
     said = sentence(table)
+    draw(table, folder / "segment.png", notes=[note for note in notes if note not in too_large])
+    said = "\n".join([said, *([growth_sentence(growth)] if growth else [])])
     atomic_write(folder / "segment.txt", "\n".join([said, *notes]) + "\n")
-    draw(table, folder / "segment.png", notes=notes)
     return {"sentence": said, "notes": notes, "rows": table, **({"growth": growth} if sizes else {})}
 
 
@@ -147,6 +151,7 @@ def measure_objects(
     objects: Sequence[tuple[str, Mesh]],
     peer: Contestant | None,
     *,
+    aims: Sequence[Aim] = AIMS,
     bounds: Sequence[float] = BOUNDS,
     repeats: int = REPEATS,
     progress: Progress = silent,
@@ -155,9 +160,10 @@ def measure_objects(
     rows: list[Row] = []
     refused: list[str] = []
     for k, (name, mesh) in enumerate(objects):
-        tasks: list[tuple[str, float]] = [(aim, bound) for bound in bounds for aim in AIMS]
+        tasks: list[tuple[str, float]] = [(aim, bound) for bound in bounds for aim in aims]
         tasks += [] if peer is None else [(peer.name, np.nan)]
         seconds: dict[tuple[str, float], list[float]] = {task: [] for task in tasks}
+        peaks: dict[tuple[str, float], list[float]] = {task: [] for task in tasks}
         flat: dict[tuple[str, float], Flat] = {}
         for turn in range(repeats):
             for j, task in enumerate(tasks):
@@ -165,16 +171,19 @@ def measure_objects(
                 if sum(seconds[task]) >= ENOUGH_S or (turn and task not in flat):
                     continue
                 try:
-                    flat[task], own, _, _ = timed_twice(_work(mesh, task, peer))
+                    flat[task], own, _, peak_mb = timed_twice(_work(mesh, task, peer))
                 except RefusedError as error:
                     refused.append(f"{name}: {task[0]} at {task[1]:g} was refused: {error}")
                     continue
                 seconds[task].append(own)
-        rows += [judged(name, mesh, *task, flat[task], seconds[task]) for task in tasks if task in flat]
+                peaks[task].append(peak_mb)
+        rows += [judged(name, mesh, *task, flat[task], seconds[task], peaks[task]) for task in tasks if task in flat]
     return rows, refused
 
 
-def judged(name: str, mesh: Mesh, method: str, bound: float, flat: Flat, seconds: Sequence[float]) -> Row:
+def judged(
+    name: str, mesh: Mesh, method: str, bound: float, flat: Flat, seconds: Sequence[float], peaks_mb: Sequence[float] = (np.nan,)
+) -> Row:
     """How good a result is: its pieces right side up, clear of each other and at the scale of the least d, however they came."""
     V, topology = mesh.V[flat.origin], Topology(flat.F)
     count, piece = topology.face_components()
@@ -197,6 +206,7 @@ def judged(name: str, mesh: Mesh, method: str, bound: float, flat: Flat, seconds
         flipped=d.flipped,
         overlap_mm2=d.overlap_mm2,
         seconds=min(seconds),
+        peak_mb=min(peaks_mb),
         repeats=len(seconds),
     )
 
