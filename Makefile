@@ -39,9 +39,9 @@ lock:
 	$(PYTHON) tools/lock.py
 	$(PYTHON) tools/licences.py
 
-# Source distribution and wheel into dist/, and the wheel tried outside the source tree.
+# Source distribution and wheel into dist/, and the wheel tried outside the source tree, with the dependencies that it asks for.
 package: setup
-	$(PYTHON) tools/package.py
+	$(PYTHON) tools/package.py dist --clean
 
 # Known weaknesses of the locked packages, asked of PyPI: pip-audit in an environment of its own. It fails, too, where PyPI cannot be asked.
 audit: setup

@@ -1,7 +1,8 @@
 """Build the source distribution and the wheel, and use the wheel where the source tree is out of reach (`make package`).
 
 Built is a copy, so that nothing is left in the tree; the wheel is made from the unpacked source distribution, as an installer
-makes it. It is installed into a virtual environment of its own that takes all other packages from the one that runs this.
+makes it. `package.py FOLDER --clean` installs it, and from a package index the dependencies that it names itself, into an environment where
+nothing else is; without it the environment takes all other packages from the one that runs this, which needs no network.
 """
 
 from __future__ import annotations
@@ -38,14 +39,14 @@ NOT_COPIED = (
 )
 
 
-def main(folder: str = "dist") -> None:
+def main(folder: str = "dist", *options: str) -> None:
     """Build both into `folder`, and try the wheel."""
     made = Path(folder).resolve()
     made.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as scratch:
         source, wheel = build(Path(scratch, "build"), made)
         check_contents(source, wheel)
-        smoke(wheel, Path(scratch, "use"))
+        smoke(wheel, Path(scratch, "use"), clean="--clean" in options)
     sys.stdout.write(f"package: {source} and {wheel.name}; the wheel works outside the source tree\n")
 
 
@@ -84,15 +85,19 @@ def check_contents(source: Path, wheel: Path) -> None:
         )
 
 
-def smoke(wheel: Path, scratch: Path) -> None:
+def smoke(wheel: Path, scratch: Path, *, clean: bool) -> None:
     """Install the wheel and do the main job with it, in a folder with nothing of the project but one mesh."""
     venv.create(scratch / "env")
     env = scratch / "env" / ("Scripts" if os.name == "nt" else "bin")
-    site = Path(sysconfig.get_path("purelib", vars={"base": str(scratch / "env")}))
-    # As a mere folder on the path: the .pth files in it, of which one names the source tree, are not followed.
-    (site / "all_others.pth").write_text(sysconfig.get_path("purelib") + "\n")
     pip = [sys.executable, "-m", "pip", "--python", str(env / "python")]
-    _run([*pip, "install", "--quiet", "--no-deps", "--no-index", "--no-compile", str(wheel)], scratch)
+    if clean:
+        _run([*pip, "install", "--quiet", "--only-binary", ":all:", str(wheel)], scratch)
+        _run([*pip, "check"], scratch)
+    else:
+        site = Path(sysconfig.get_path("purelib", vars={"base": str(scratch / "env")}))
+        # As a mere folder on the path: the .pth files in it, of which one names the source tree, are not followed.
+        (site / "all_others.pth").write_text(sysconfig.get_path("purelib") + "\n")
+        _run([*pip, "install", "--quiet", "--no-deps", "--no-index", "--no-compile", str(wheel)], scratch)
     where = _run(
         [str(env / "python"), "-c", f"import {', '.join(PACKAGES)}; print({'.__file__, '.join(PACKAGES)}.__file__, sep='\\n')"], scratch
     )
