@@ -11,7 +11,7 @@ from skinfab.flatten.laplacian import intrinsic
 from skinfab.mesh.joined import joined
 from skinfab.mesh.model import Mesh
 from skinfab.seams.cut import open_pieces
-from skinfab.seams.judge import Limits, judge
+from skinfab.seams.judge import Limits, Parted, Verdict, judge
 from skinfab.seams.refine import Judged
 from skinfab.tolerances import NEWTON_DECREASE
 
@@ -73,6 +73,7 @@ def glue_pieces(
     for k, (piece, _) in judged.items():
         owner[piece.faces] = k
     refused: set[tuple[int, int, int]] = set()
+    lengths: dict[tuple[int, int], Verdict] = {}
     blunt = ~_is_cone(mesh)
     fresh = len(judged)
     for _ in range(_MOST_TRIALS):
@@ -92,8 +93,11 @@ def glue_pieces(
         (piece,) = open_pieces(mesh, trial, faces=faces)
         may = piece.is_disk and not (whole and locked is not None and locked[edges].any())
         verdict = judge(mesh, piece, limits, tolerance=tolerance, untangle=False) if may else None
-        if verdict is None or not verdict.accepted or verdict.distortion.mean > _mean(mesh, judged[a], judged[b]) + excess:
+        stretched = verdict is not None and verdict.distortion.mean > _mean(mesh, judged[a], judged[b]) + excess
+        if verdict is None or stretched or not verdict.accepted:
             refused.add((a, b, first))
+            if verdict is not None and not (stretched or verdict.too_distorted or verdict.overlaps):
+                lengths[a, b] = verdict
             continue
         cut = trial
         one, other = judged[a][1].parted, judged[b][1].parted
@@ -101,7 +105,25 @@ def glue_pieces(
         owner[faces] = fresh
         del judged[a], judged[b]
         fresh += 1
-    return cut, sorted(judged.values(), key=lambda item: int(item[0].faces[0]))
+    return cut, sorted(_marked(judged, lengths).values(), key=lambda item: int(item[0].faces[0]))
+
+
+def _marked(judged: dict[int, Judged], refused: dict[tuple[int, int], Verdict]) -> dict[int, Judged]:
+    """The pieces; those that nothing but the bed or a neck keeps from being joined, and that nothing is known of yet, say so."""
+    pairs = [pair for pair in refused if all(k in judged and judged[k][1].parted is None for k in pair)]
+    marked = dict(judged)
+    while pairs:
+        group, why = set(pairs[0]), []
+        while touching := [pair for pair in pairs if group & set(pair)]:
+            pairs = [pair for pair in pairs if pair not in touching]
+            why += [refused[pair] for pair in touching]
+            group.update(*touching)
+        first = min(int(judged[k][0].faces[0]) for k in group)
+        neck = min((verdict.neck.width for verdict in why if verdict.neck is not None), default=0.0)
+        # Of three and more only pairs are known to be flat.
+        parted = Parted(first, any(verdict.too_large for verdict in why), neck, flat=len(group) == 2)
+        marked |= {k: (judged[k][0], replace(judged[k][1], parted=parted)) for k in group}
+    return marked
 
 
 def _common(mesh: Mesh, cut: BoolArray, owner: IntArray, a: int, b: int) -> IntArray:
