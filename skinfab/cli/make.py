@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from skinfab.cli import steps
-from skinfab.cli.advice import many_pieces
+from skinfab.cli.advice import enclosed_words, many_pieces
 from skinfab.cli.alike import alike
 
 if TYPE_CHECKING:
@@ -110,13 +110,13 @@ def _cut_mesh(args: argparse.Namespace, watch: Stopwatch, progress: Progress) ->
         steps.say(flattened.remarks)
     # A cut is judged by flattening as far as it takes; "flatten" drives it to the end.
     with watch.phase("segment"):
-        seams = steps.cut(args, loaded, flattened.mesh, used, part_of(progress, 0.05, 0.6))
+        seams, notes = steps.cut(args, loaded, flattened.mesh, used, part_of(progress, 0.05, 0.6))
     with watch.phase("flatten"):
         bound = steps.bound_of(args)
         skin, distortions = steps.to_skin(loaded, flattened, seams, used=used, max_distortion=bound, max_p99=args.max_p99, seed=args.seed)
     remarks = (*flattened.remarks, *many_pieces(skin, wrapped=args.wrap is not None))
     steps.say(remarks[len(flattened.remarks) :])
-    return skin, distortions, used, (*loaded.notes, *remarks)
+    return skin, distortions, used, (*loaded.notes, *remarks, *notes)
 
 
 def _document(args: argparse.Namespace, watch: Stopwatch, progress: Progress) -> Started:
@@ -131,4 +131,6 @@ def _document(args: argparse.Namespace, watch: Stopwatch, progress: Progress) ->
         skin = replace(skin, printer=used.printer_name, material=used.material_name)
     with watch.phase("flatten"):
         distortions = [measure(p.V(skin.mesh), p.F, p.UV, topology=p.topology) for p in skin.pieces]
-    return skin, distortions, used, ()
+    warnings = enclosed_words(skin, used.material.neck)
+    steps.say(warnings, kind="warning")
+    return skin, distortions, used, tuple(warnings)

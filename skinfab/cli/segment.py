@@ -6,7 +6,7 @@ import argparse
 import json
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 from skinfab.cli import steps
 from skinfab.cli.advice import many_pieces
@@ -14,6 +14,9 @@ from skinfab.cli.advice import many_pieces
 if TYPE_CHECKING:
     from skinfab.flatten.distortion import Distortion
     from skinfab.skin import Skin
+
+#: The document, each piece's distortion, and the notes and warnings that were said.
+Started: TypeAlias = "tuple[Skin, Sequence[Distortion], list[str], list[str]]"
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -42,16 +45,18 @@ def run(args: argparse.Namespace) -> int:
     from skinfab.seams.rules import edge_mask
 
     start = _document if args.mesh.suffix.lower() == ".skin" else _mesh
-    skin, distortions = start(args)
+    skin, distortions, notes, warnings = start(args)
     save_skin(skin, args.output)
-    steps.say(many_pieces(skin, wrapped=args.wrap is not None))
+    advice = many_pieces(skin, wrapped=args.wrap is not None)
+    steps.say(advice)
     length = seam_length(skin.mesh, edge_mask(skin.mesh, skin.seams))
     if args.json:
         pieces = [
             {"id": p.id, "n_faces": len(p.F), "size_mm": p.size, "distortion": {"mean": d.mean, "p95": d.p95, "p99": d.p99, "max": d.max}}
             for p, d in zip(skin.pieces, distortions, strict=True)
         ]
-        print(json.dumps({"skin": str(args.output), "seam_mm": length, "pieces": pieces}))
+        said = {"notes": [*notes, *advice], "warnings": warnings}
+        print(json.dumps({"skin": str(args.output), "seam_mm": length, "pieces": pieces, **said}))
         return 0
     for line in steps.piece_lines(skin.pieces, distortions):
         print(line)
@@ -59,20 +64,22 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def _mesh(args: argparse.Namespace) -> tuple[Skin, Sequence[Distortion]]:
+def _mesh(args: argparse.Namespace) -> Started:
     """Read a mesh and cut it."""
     from skinfab.progress import terminal_progress
 
     loaded = steps.load_to_cut(args)
     flattened = steps.surface(args, loaded.mesh)
+    steps.say(flattened.remarks)
     used = steps.profiles(args.printer, args.material)
     with terminal_progress(quiet=args.json) as progress:
-        seams = steps.cut(args, loaded, flattened.mesh, used, progress)
+        seams, notes = steps.cut(args, loaded, flattened.mesh, used, progress)
     bound = steps.bound_of(args)
-    return steps.to_skin(loaded, flattened, seams, used=used, max_distortion=bound, max_p99=args.max_p99, seed=args.seed)
+    skin, distortions = steps.to_skin(loaded, flattened, seams, used=used, max_distortion=bound, max_p99=args.max_p99, seed=args.seed)
+    return skin, distortions, [*loaded.notes, *flattened.remarks, *notes], []
 
 
-def _document(args: argparse.Namespace) -> tuple[Skin, Sequence[Distortion]]:
+def _document(args: argparse.Namespace) -> Started:
     """Read a document and cut it anew, by its marks."""
     from gcode.used import with_room_for_nozzle
     from skinfab.document import load_skin
@@ -87,5 +94,6 @@ def _document(args: argparse.Namespace) -> tuple[Skin, Sequence[Distortion]]:
     with terminal_progress(quiet=args.json) as progress:
         found = auto_cut(skin, within, neck=used.material.neck, material=roomy, aim=args.pieces, progress=progress)
     steps.say(found.notes)
-    steps.say([fault.text for fault in found.faults], kind="warning")
-    return found.skin, found.distortions
+    warnings = [fault.text for fault in found.faults]
+    steps.say(warnings, kind="warning")
+    return found.skin, found.distortions, list(found.notes), warnings

@@ -251,8 +251,8 @@ def to_skin(
     )
 
 
-def cut(args: argparse.Namespace, loaded: Loaded, mesh: Mesh, used: Used, progress: Progress) -> Seams:
-    """Automatic seams of the surface that is flattened, or those that ``--cuts`` gives."""
+def cut(args: argparse.Namespace, loaded: Loaded, mesh: Mesh, used: Used, progress: Progress) -> tuple[Seams, list[str]]:
+    """Automatic seams of the surface that is flattened, or those that ``--cuts`` gives; what was said of them on standard error."""
     from skinfab.seams.auto import find_seams
     from skinfab.seams.parted import parted_text
 
@@ -262,13 +262,17 @@ def cut(args: argparse.Namespace, loaded: Loaded, mesh: Mesh, used: Used, progre
         progress(done, "cutting and flattening")
 
     if args.cuts is not None:
-        return _by_hand(args, loaded, mesh, within, neck, report)
-    found = find_seams(mesh, within, neck=neck, aim=args.pieces, progress=report)
-    say(parted_text(found.pieces, within))
-    return found
+        found, notes = _by_hand(args, loaded, mesh, within, neck, report)
+    else:
+        found, notes = find_seams(mesh, within, neck=neck, aim=args.pieces, progress=report), []
+    notes += parted_text(found.pieces, within)
+    say(notes)
+    return found, notes
 
 
-def _by_hand(args: argparse.Namespace, loaded: Loaded, mesh: Mesh, within: Limits, neck: float, progress: Callable[[float], None]) -> Seams:
+def _by_hand(
+    args: argparse.Namespace, loaded: Loaded, mesh: Mesh, within: Limits, neck: float, progress: Callable[[float], None]
+) -> tuple[Seams, list[str]]:
     from skinfab.mesh.io import load_mesh
     from skinfab.seams.manual import completed, cut_along, numbers_in, read_cuts, seams_by_hand
 
@@ -279,11 +283,10 @@ def _by_hand(args: argparse.Namespace, loaded: Loaded, mesh: Mesh, within: Limit
     # The surface that is flattened has the same vertices and edges, elsewhere.
     by_hand = cut_along(loaded.mesh, paths, numbers=numbers)
     if not args.complete:
-        return seams_by_hand(mesh, by_hand, within, numbers=numbers)
+        return seams_by_hand(mesh, by_hand, within, numbers=numbers), []
     seams = completed(mesh, by_hand, within, neck=neck, aim=args.pieces, progress=progress)
     added = int((seams.cut & ~by_hand).sum())
-    say([f"{added} edges were cut beyond those given by hand"] if added else [])
-    return seams
+    return seams, [f"{counted(added, 'edge')} {'was' if added == 1 else 'were'} cut beyond those given by hand"] if added else []
 
 
 def piece_lines(pieces: Sequence[Piece], distortions: Sequence[Distortion]) -> list[str]:

@@ -274,7 +274,7 @@ def test_a_scaled_object_scales_its_skin(tmp_path: Path) -> None:
     assert area == pytest.approx(6 * 60**2, rel=1e-9)  # six squares of 40 mm, half as long again
 
 
-def test_a_printer_that_is_too_small_gets_smaller_pieces(tmp_path: Path) -> None:
+def test_a_printer_that_is_too_small_gets_smaller_pieces(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     # The cube's net is 170 mm long; this bed leaves 126 mm between the mould's rims.
     text = (
         (ROOT / "gcode/profiles/ender5plus-vipro.toml")
@@ -286,6 +286,10 @@ def test_a_printer_that_is_too_small_gets_smaller_pieces(tmp_path: Path) -> None
     assert main(["make", str(ROOT / "meshes/cube.obj"), "-o", str(tmp_path / "out"), "--printer", str(tmp_path / "small.toml")]) == 0
     report = results.read_report(tmp_path / "out")
     assert len(report["pieces"]) > 1
+    (told,) = [w for w in report["warnings"] if "parts of what does not fit the bed with its mould" in w]
+    # Said while it is cut, and not once more at the end.
+    said = capsys.readouterr().err
+    assert "1 piece would do on a larger bed" in told and said.count(told) == 1 and f"note: {told}" in said.splitlines()
     V, UV, F, FT = results.read_flat_obj(tmp_path / "out/flat.obj")
     assert results.distortion(V, UV, F, FT)[0] == pytest.approx(4.0, abs=1e-6)
     for entry in report["gcode"]:

@@ -197,6 +197,27 @@ def test_marks_that_contradict_each_other_are_refused(tmp_path: Path, capsys: py
     assert f"{a}-{b}: locked" in capsys.readouterr().err and not (tmp_path / "b.skin").exists()
 
 
+def test_pieces_too_small_to_handle_behind_locks_are_told_by_segment_and_make(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A corner of the cube, 2 mm across each face, that locked seams part from the rest."""
+    document, out = tmp_path / "a.skin", tmp_path / "out"
+    V = np.array([[0, 0, 0], [2, 0, 0], [0, 2, 0], [0, 0, 2], [30, 0, 0], [0, 30, 0], [0, 0, 30.0]])
+    faces = [(0, 1, 2), (0, 2, 3), (0, 3, 1), (1, 4, 5), (1, 5, 2), (2, 5, 6), (2, 6, 3), (3, 6, 4), (3, 4, 1)]
+    lines = [f"v {x} {y} {z}" for x, y, z in V] + [f"f {c + 1} {b + 1} {a + 1}" for a, b, c in faces]
+    (tmp_path / "corner.obj").write_text("\n".join(lines) + "\n")
+    assert main(["segment", str(tmp_path / "corner.obj"), "-o", str(document), "--units", "mm"]) == 0
+    skin = load_skin(document)
+    ring = skin.mesh.topology.edge_ids(np.array([[1, 2], [2, 3], [1, 3]]))
+    save_skin(lock(skin, ring), document)
+    capsys.readouterr()
+    assert main(["segment", str(document), "-o", str(document), "--json"]) == 0
+    said = capsys.readouterr()
+    (told,) = json.loads(said.out)["warnings"]
+    assert "narrower than the 4 mm" in told and told.endswith("unlock some of them") and f"warning: {told}" in said.err.splitlines()
+    assert main(["make", str(document), "-o", str(out)]) == 0
+    assert json.loads((out / "report.json").read_text())["warnings"].count(told) == 1
+    assert capsys.readouterr().err.count(told) == 1
+
+
 def test_simplest_pieces(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["segment", CUBE, "-o", str(tmp_path / "cube.skin"), "--pieces", "simplest", "--json"]) == 0
     said = json.loads(capsys.readouterr().out)
@@ -216,6 +237,7 @@ def test_a_piece_whose_halves_hang_on_a_thread_is_parted(tmp_path: Path, capsys:
     assert main(words) == 0
     said = json.loads(capsys.readouterr().out)
     assert len(said["pieces"]) == 2 and said["seam_mm"] == pytest.approx(2, abs=0.3)
+    assert said["warnings"] == [] and said["notes"][-1].startswith("2 of the pieces are parted at a neck of 2 mm")
 
 
 @pytest.mark.skipif(not hasattr(os, "openpty"), reason="no pseudo-terminals on this system")
