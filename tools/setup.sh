@@ -74,6 +74,9 @@ import numpy as np
 from skinfab.bench.disks import bumpy_cap
 from skinfab.flatten import bijective
 from skinfab.flatten.disk import flatten_isometric
+from skinfab.mesh.door import load_usable
+from skinfab.seams.auto import find_seams
+from skinfab.seams.judge import Limits
 from gui.view3d import painter
 painter.warm()
 flatten_isometric(*bumpy_cap(5400))
@@ -81,6 +84,7 @@ turn, r = np.meshgrid(np.linspace(0, 4 * np.pi, 81), np.linspace(1, 2, 5))
 V = np.stack([r.ravel() * np.cos(turn.ravel()), r.ravel() * np.sin(turn.ravel()), 0.3 * turn.ravel()], axis=1)
 k = (81 * np.arange(4)[:, None] + np.arange(80)).ravel()
 bijective.flatten_bijective(V, np.concatenate([np.stack([k, k + 1, k + 82], axis=1), np.stack([k, k + 82, k + 81], axis=1)]))
+find_seams(load_usable("meshes/cube.obj").mesh, Limits(), aim="fewest")
 WARM
 
 # Only the GUI and its tests need a Tk and, where there is no screen, a virtual one: without them the rest still works.
