@@ -7,7 +7,6 @@ import csv
 import io
 import json
 import math
-import time
 from collections import Counter
 from collections.abc import Sequence
 from contextlib import ExitStack
@@ -25,8 +24,6 @@ if TYPE_CHECKING:
     from skinfab.fingertip.array.watch import ArrayWatch
 
 FILES = ("array.png", "events.csv", "frames.csv", "result.json")
-#: How long to wait for a frame before looking whether time is up, s.
-_WAIT_S = 0.2
 _HEAD = [
     "time_s",
     "state",
@@ -120,7 +117,7 @@ def _from_port(args: argparse.Namespace, until_written: ExitStack) -> tuple[tupl
     from dataclasses import replace
 
     from skinfab.cli.ending import ended_by_signals
-    from skinfab.errors import InputError
+    from skinfab.cli.listening import Listening
     from skinfab.fingertip.array.geometry import tactel_columns
     from skinfab.fingertip.array.watch import ArrayWatch, warm_up
     from skinfab.readout.serial_port import BAUD, SerialPort
@@ -133,16 +130,18 @@ def _from_port(args: argparse.Namespace, until_written: ExitStack) -> tuple[tupl
         stop = until_written.enter_context(ended_by_signals())
         model, notes = _model(args, tactel_columns(source.stream)[0])
         watch = ArrayWatch(source.stream, model)
-        clock, end = HostClock(), time.monotonic() + (args.seconds or math.inf)
-        while not stop.is_set() and (left := end - time.monotonic()) > 0:
-            asked = clock.now()
-            if (frame := source.read(min(left, _WAIT_S))) is not None and (made := watch.step(frame)) is not None:
+        listening, clock = Listening(source, stop, seconds=args.seconds, quiet=args.json), HostClock()
+        asked = clock.now()
+        for frame in listening.frames():
+            if (made := watch.step(frame)) is not None:
                 lag.add(asked, frame.host_time, clock.now())
                 readings.append(made)
                 _tell(args, made.events)
+            asked = clock.now()
         counts = source.counts
-    if not readings:
-        raise InputError(f"{args.port} sent {counts.frames} frames, and the first second of them is rest; let it send for longer")
+        if not readings:
+            raise listening.too_little(f"sent {counts.frames} frames, and the first second of them is rest", "let it send for longer")
+        notes += listening.notes
     last = watch.finish()
     _tell(args, last)
     readings[-1] = replace(readings[-1], events=(*readings[-1].events, *last))

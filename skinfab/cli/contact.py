@@ -125,9 +125,14 @@ def _run(args: argparse.Namespace, until_written: ExitStack) -> int:
 _ONLY = {"object": SIMULATOR, "trials": SIMULATOR, "seed": SIMULATOR, "seconds": "port", "baud": "port"}
 
 
+def _is_port(path: Path) -> bool:
+    """One that is there, or was to be: a log in /dev is nobody's, and who has unplugged a port is not to be told to give a log."""
+    return path.is_char_device() or (Path("/dev") in path.parents and not path.exists())
+
+
 def _kind(args: argparse.Namespace) -> str:
     """What the contacts are to be found in; wrong usage where the words contradict each other."""
-    live = [word for word in args.logs if word == SIMULATOR or Path(word).is_char_device()]
+    live = [word for word in args.logs if word == SIMULATOR or _is_port(Path(word))]
     if live and len(args.logs) > 1:
         args.wrong_usage(f"{live[0]} stands alone: it is no log among others")
     kind = "log" if not live else SIMULATOR if live[0] == SIMULATOR else "port"

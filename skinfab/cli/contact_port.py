@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import math
-import threading
-import time
 from collections.abc import Sequence
 from contextlib import ExitStack
 from dataclasses import replace
@@ -14,12 +12,10 @@ from skinfab.cli import steps
 
 if TYPE_CHECKING:
     from calibration.contact.detector import Contact, ContactDetector, Detection
+    from skinfab.cli.listening import Listening
     from skinfab.readout.frame import Frame, Recording
-    from skinfab.readout.serial_port import SerialPort
     from skinfab.wiring import Wire
 
-#: How long to wait for a frame before looking whether time is up, s.
-_WAIT_S = 0.2
 #: Where the port does not say how many frames come a second, they are counted for so long, s, and so many of them.
 _COUNTED_S, _COUNTED = 2.0, 10
 #: Channels that are not watched yet are named this often, s of the stream.
@@ -49,7 +45,7 @@ def watch_port(
     """
     from calibration.contact.detector import ContactDetector
     from skinfab.cli.ending import ended_by_signals
-    from skinfab.errors import InputError
+    from skinfab.cli.listening import Listening
     from skinfab.readout.frame import Recording
     from skinfab.readout.serial_port import BAUD, SerialPort
     from skinfab.wired import rests, unit_notes, wired
@@ -58,24 +54,24 @@ def watch_port(
     notes: list[str] = []
     with SerialPort(port, baud=baud or BAUD) as source:
         stop = until_written.enter_context(ended_by_signals())
-        stream, end = source.stream, time.monotonic() + (seconds or math.inf)
+        stream, listening = source.stream, Listening(source, stop, seconds=seconds)
         if wires:
             stream, told_of = wired(stream, wires)
             notes += told_of
         if not stream.rate_hz:
-            stream = replace(stream, rate_hz=_counted(source, frames, end, stop))
+            stream = replace(stream, rate_hz=_counted(listening, frames))
             notes.append(f"{port} does not say how many frames come a second; {stream.rate_hz:.4g} were counted")
         watch = ContactDetector(stream, false_alarms=false_alarms, channels=channels)
         told = Told(watch)
         for frame in frames:
             told.step(frame)
-        while not stop.is_set() and (left := end - time.monotonic()) > 0:
-            if (got := source.read(min(left, _WAIT_S))) is not None:
-                frames.append(got)
-                told.step(got)
+        for frame in listening.frames():
+            frames.append(frame)
+            told.step(frame)
         counts = source.counts
-    if not frames:
-        raise InputError(f"{port} sent no frame; is the device running?")
+        if not frames:
+            raise listening.too_little("sent no frame", "is the device running?")
+        notes += listening.notes
     notes += [
         f"{count} frames were {how}" for how, count in (("lost", counts.lost), ("damaged", counts.bad), ("late", counts.late)) if count
     ]
@@ -85,20 +81,17 @@ def watch_port(
     return recording, watch.found(), notes
 
 
-def _counted(source: SerialPort, frames: list[Frame], end: float, stop: threading.Event) -> float:
+def _counted(listening: Listening, frames: list[Frame]) -> float:
     """How many frames come a second; those that were counted are put into `frames`.
 
     Over all of them: lines arrive in bunches, so their distances say little.
     """
-    from skinfab.errors import InputError
-
-    until = min(time.monotonic() + _COUNTED_S, end)
-    while not stop.is_set() and ((left := until - time.monotonic()) > 0 or (len(frames) < _COUNTED and time.monotonic() < end)):
-        if (frame := source.read(min(max(left, 0.0) or _WAIT_S, _WAIT_S))) is not None:
-            frames.append(frame)
+    frames += listening.frames(for_s=_COUNTED_S)
+    while len(frames) < _COUNTED and (frame := next(listening.frames(), None)) is not None:
+        frames.append(frame)
     spans = frames[-1].device_time - frames[0].device_time if len(frames) >= _COUNTED else 0.0
     if not spans > 0:
-        raise InputError(f"{source.port} sent {len(frames)} frames, too few to count how many come a second; watch it for longer")
+        raise listening.too_little(f"sent {len(frames)} frames, too few to count how many come a second", "watch it for longer")
     return (len(frames) - 1) / spans
 
 

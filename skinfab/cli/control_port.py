@@ -29,7 +29,7 @@ def run_port(args: argparse.Namespace, human: Input, robot: Input) -> int:
     from calibration.control.loop import run_loop
     from calibration.control.rate import measured_rate
     from skinfab.cli.control import judge, outside_words
-    from skinfab.cli.record import outage_notes, outages
+    from skinfab.cli.listening import outage_notes, outages
     from skinfab.readout.priority import real_time
     from skinfab.readout.serial_port import SerialPort
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import statistics
-import time
 from collections.abc import Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
@@ -23,8 +22,6 @@ if TYPE_CHECKING:
     from skinfab.fingertip.force.touch_model import TouchModel
     from skinfab.readout.frame import Stream
 
-#: How long to wait for a frame before looking whether time is up, s.
-_WAIT_S = 0.2
 #: A contact that lasts is told again this often, s.
 _AGAIN_S = 1.0
 _MS = 1e3
@@ -112,6 +109,7 @@ def watch_port(
     import numpy as np
 
     from skinfab.cli.ending import ended_by_signals
+    from skinfab.cli.listening import Listening
     from skinfab.errors import InputError
     from skinfab.fingertip.force.contact import LEAST_FORCE_N, locate
     from skinfab.fingertip.force.logs import WrenchLog
@@ -135,12 +133,9 @@ def watch_port(
         watch = MotionWatch(limits, rate_hz=stream.rate_hz, surface=surface, least_force=least, noise=noise)
         teller, rest = _Teller(least, surface, quiet), _Rest(stream.name, tare)
         units = None if said else _Units(port, watch.surface, least)
-        clock, end = HostClock(), time.monotonic() + (seconds or math.inf)
-        missing, began = 0, clock.now()
-        while not stop.is_set() and (left := end - time.monotonic()) > 0:
-            frame = source.read(min(left, _WAIT_S))
-            if frame is None:
-                continue
+        listening, clock, missing = Listening(source, stop, seconds=seconds, quiet=quiet), HostClock(), 0
+        began = clock.now()
+        for frame in listening.frames():
             if not frame.valid[columns].all() or frame.saturated[columns].any():
                 missing += 1
                 continue
@@ -158,11 +153,12 @@ def watch_port(
                 motions[each.told] = each
             teller.step(frame.device_time, wrench, new)
         counts = source.counts
-    if not rows:
-        after = f" after the {tare:g} s in which it rests" if tare else ""
-        raise InputError(f"{port} sent no whole sample{after}; is the sensor running?")
+        if not rows:
+            after = f" after the {tare:g} s in which it rests" if tare else ""
+            raise listening.too_little(f"sent no whole sample{after}", "is the sensor running?")
+        notes = listening.notes
     table = np.array(rows)
-    notes = [
+    notes += [
         f"{count} samples were {how}" for how, count in (("lost", counts.lost), ("damaged", counts.bad), ("late", counts.late)) if count
     ]
     notes += [f"{missing} samples lacked a component or were saturated, and were passed over"] * bool(missing)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import time
 from contextlib import ExitStack
 from typing import TYPE_CHECKING, Any
@@ -13,13 +12,9 @@ if TYPE_CHECKING:
     from skinfab.fingertip.nail.live import Told
     from skinfab.fingertip.nail.regress import Regression
 
-#: How long to wait for a frame before looking whether time is up, s.
-_WAIT_S = 0.2
 #: A contact is said when so many decisions in a row agree: of windows of 33 readings, 8 apart, the fifth shares none with the first.
 _AGREE = 5
 _OFF = "the motor does not turn"
-#: After so long without a frame it is said that nothing comes, s.
-_SILENT_S = 2.0
 #: Edges of the histogram of latencies, ms.
 _EDGES_MS = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0)
 
@@ -48,7 +43,7 @@ def watch_port(
         The port cannot be read, or what it sends is not what the model learned from.
     """
     from skinfab.cli.ending import ended_by_signals
-    from skinfab.cli.record import outage_notes, outages
+    from skinfab.cli.listening import Listening
     from skinfab.fingertip.nail.histogram_model import HistogramModel
     from skinfab.fingertip.nail.live import NailWatch
     from skinfab.fingertip.nail.units import absent, units_note
@@ -61,14 +56,10 @@ def watch_port(
     with SerialPort(port, baud=baud or BAUD) as source:
         stop = until_written.enter_context(ended_by_signals())
         watch = NailWatch(model, source.stream, samples=samples, every=every, regression=regression, rate_hz=rate_hz)
-        clock, end = HostClock(), time.monotonic() + (seconds or math.inf)
-        began, began_at, heard = clock.now(), time.time(), time.monotonic()
-        frames, passed_over, busy = 0, 0, 0.0
-        while not stop.is_set() and (left := end - time.monotonic()) > 0:
-            if (frame := source.read(min(left, _WAIT_S))) is None:
-                speaker.silence(port, time.monotonic() - heard)
-                continue
-            heard = time.monotonic()
+        listening = Listening(source, stop, seconds=seconds, quiet=quiet)
+        clock = HostClock()
+        began, frames, passed_over, busy = clock.now(), 0, 0, 0.0
+        for frame in listening.frames():
             if frame.host_time < began:  # what gathered meanwhile is old, and would make all that follows late
                 passed_over += 1
                 continue
@@ -80,7 +71,7 @@ def watch_port(
                 latency.append(1000 * (clock.now() - frame.host_time))
                 told.append(made)
                 speaker.hear(made)
-        counts, gone = source.counts, outages(source, began_at, time.time())
+        counts = source.counts
         facts = {
             "source": port,
             "sha256": None,
@@ -91,11 +82,11 @@ def watch_port(
             "window_readings": watch.samples,
             "latency_ms": latency_facts(latency),
             "deciding": min(busy / max(clock.now() - began, 1e-9), 1.0),
-            "outages": gone,
+            "outages": listening.outages,
             "notes": [
                 *absent(source.stream),
                 *units_note(units_said, source.stream, "stream"),
-                *outage_notes(port, gone),
+                *listening.notes,
                 *[f"{counts.bad} packets were damaged"] * bool(counts.bad),
             ],
         }
@@ -128,13 +119,6 @@ class _Speaker:
         # Windows of the published method share no readings, so one is as good as five that do.
         self._needed = agree
         self._quiet, self._said, self._last, self._agree = quiet, "", "", 0
-
-    def silence(self, port: str, lasts_s: float) -> None:
-        """Say once that nothing comes."""
-        silent = f"nothing comes from {port}; is it plugged in, and does it send?"
-        if not self._quiet and lasts_s >= _SILENT_S and self._said != silent:
-            self._said = silent
-            print(silent, flush=True)
 
     def hear(self, told: Told) -> None:
         """Take a decision; print it where it is news."""

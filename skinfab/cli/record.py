@@ -13,9 +13,10 @@ from typing import TYPE_CHECKING, Any
 
 from skinfab.cli import steps
 from skinfab.cli.ending import ended_by_signals
+from skinfab.cli.listening import outage_notes, outages
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Callable, Iterator
 
     from skinfab.readout.paced import PacedFrames
     from skinfab.readout.record import State
@@ -26,8 +27,6 @@ if TYPE_CHECKING:
 SIMULATOR = "simulator"
 #: A larger recording is not read again at its end to be checked.
 _CHECKED_BYTES = 200_000_000
-#: Sentences on a port that came and went.
-_OUTAGES = 4
 
 
 def baud(text: str) -> int:
@@ -178,47 +177,6 @@ def _clock(seconds: float) -> str:
         return f"{seconds / 86_400:.0f} days" if seconds < 36_500 * 86_400 else "for ever"
     minutes, rest = divmod(int(seconds), 60)
     return f"{minutes // 60}:{minutes % 60:02}:{rest:02}" if minutes >= 60 else f"{minutes}:{rest:02}"
-
-
-def outages(source: SerialPort | PacedFrames, began: float, ended: float) -> list[dict[str, Any]]:
-    """When a port was gone between two moments (s since 1970), ready for JSON; a simulator never is."""
-    from skinfab.readout.serial_port import SerialPort
-
-    if not isinstance(source, SerialPort):
-        return []
-    return [
-        {
-            "after_s": round(max(each.began - began, 0.0), 3),
-            "lasted_s": round(max((ended if each.ended is None else each.ended) - max(each.began, began), 0.0), 3),
-            "back": each.ended is not None,
-        }
-        for each in source.outages
-    ]
-
-
-def outage_notes(port: str, gone: Sequence[dict[str, Any]]) -> list[str]:
-    """A sentence on each time the port was gone, on the first few where there are many.
-
-    Examples
-    --------
-    >>> outage_notes("/dev/ttyACM0", [{"after_s": 1.25, "lasted_s": 2.5, "back": False}])
-    ['/dev/ttyACM0 was gone from 1.2 s on and did not come back: the last 2.5 s are missing; look at its cable']
-    """
-    notes = [
-        f"{port} was gone from {each['after_s']:.1f} s on, for {each['lasted_s']:.1f} s; look at its cable"
-        if each["back"]
-        else f"{port} was gone from {each['after_s']:.1f} s on and did not come back: the last {each['lasted_s']:.1f} s are missing; "
-        "look at its cable"
-        for each in gone
-    ]
-    if len(notes) <= _OUTAGES:
-        return notes
-    rest = gone[_OUTAGES - 2 : -1]
-    return [
-        *notes[: _OUTAGES - 2],
-        f"{port} was gone {len(rest)} more times, for {sum(each['lasted_s'] for each in rest):.1f} s",
-        notes[-1],
-    ]
 
 
 def _notes(counts: dict[str, int], path: Path, size: int, wires: tuple[Wire, ...]) -> tuple[list[str], tuple[AtRest, ...]]:

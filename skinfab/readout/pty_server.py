@@ -173,15 +173,24 @@ class PtyServer:
                 if self.left:
                     return
             if k in self._faults.unplugged:
-                self._pull_out()
-                self._stop.wait(self._faults.unplugged[k])
-                self._plug_in()
+                self._unplug(self._faults.unplugged[k])
                 described = -1.0
             now = time.monotonic()
             if described < 0 or now - described >= DESCRIBE_S or (not self._rate and k % DESCRIBE_FRAMES == 0):
                 described = now
                 yield self._description(), False
             yield self._packet(frame), True
+
+    def _unplug(self, for_s: float) -> None:
+        """Where nothing may be lost, what is on its way is read first, and the reader, who throws away what it finds, is waited for."""
+        if not self._rate:
+            self._drain()
+        self._pull_out()
+        self._stop.wait(for_s)
+        self._plug_in()
+        if not self._rate:
+            os.close(self._other_end)
+            self._wait_for_reader()
 
     def _timed(self) -> Iterator[Frame]:
         """The frames, each at its time; none is asked for before that."""

@@ -191,14 +191,14 @@ def test_a_port_that_goes_away_is_told(
     model: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Pulled out after 0.2 s, for longer than is waited: said while nothing comes, and of what came."""
-    from skinfab.cli import nail_port
+    from skinfab.cli import listening
 
-    monkeypatch.setattr(nail_port, "_SILENT_S", 0.3)
+    monkeypatch.setattr(listening, "_SILENT_S", 0.3)
     frames = list(itertools.islice(nail_frames(participant(np.random.default_rng([0, 1])), [None], hold_s=0.4), 1120))
     with served(nail_stream(), frames, Faults(unplugged={280: 30.0})) as device:
         assert main(["nail", "run", str(model), "--port", str(device.path), "--seconds", "2", "-o", str(tmp_path / "o")]) == 0
     said = capsys.readouterr()
-    assert said.out.count(f"nothing comes from {device.path}") == 1
+    assert said.err.count(f"nothing comes from {device.path}") == 1
     found = json.loads((tmp_path / "o/result.json").read_text())
     (gone,) = found["outages"]
     assert not gone["back"] and "did not come back" in said.err and any("look at its cable" in note for note in found["notes"])

@@ -17,8 +17,8 @@ from pathlib import Path
 
 import pytest
 
+from skinfab.cli.listening import outage_notes
 from skinfab.cli.main import main
-from skinfab.cli.record import outage_notes
 from skinfab.readout.faults import Faults
 from skinfab.readout.logs.log import read_log
 from skinfab.readout.pty_server import PtyServer
