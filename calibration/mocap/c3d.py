@@ -6,6 +6,7 @@ import hashlib
 import io
 import json
 import os
+import signal
 import struct
 import subprocess
 import sys
@@ -13,6 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
+from calibration.mocap.c3d_parameters import INTEL, fault
 from calibration.mocap.markers import Markers, in_mm, masked
 from skinfab.errors import InputError
 
@@ -22,7 +24,6 @@ MAGIC = b"\x50"
 TIMEOUT_S = 120.0
 
 _BLOCK = 512
-_INTEL = 84
 #: A header has two bytes for the last frame's number: a longer capture states this one.
 _LAST = 65535
 
@@ -38,6 +39,8 @@ def read_c3d(path: Path) -> Markers:
         It is damaged, or has no markers or no rate.
     """
     data = path.read_bytes()
+    if wrong := fault(data):
+        raise InputError(f"{path} is no C3D file that can be read ({wrong}); export it again")
     arrays = _contents(path)
     said = json.loads(arrays["said"].tobytes())
     points, residuals = arrays["points"], arrays["residuals"]
@@ -72,13 +75,17 @@ def _contents(path: Path) -> dict[str, np.ndarray]:
     """What the library reads, in a process of its own."""
     # The packages as they are here, and nothing that happens to lie in the user's folder.
     environment = os.environ | {"PYTHONPATH": str(Path(__file__).resolve().parents[2])}
+    environment["OPENBLAS_NUM_THREADS"] = "1"  # each thread takes some of the addresses it is allowed
     command = [sys.executable, "-P", "-m", "calibration.mocap.c3d_process", str(path.resolve())]
     try:
         done = subprocess.run(command, capture_output=True, timeout=TIMEOUT_S, env=environment, check=False)
-    except subprocess.TimeoutExpired as fault:
-        raise InputError(f"{path} could not be read in {TIMEOUT_S:g} s; it is damaged: take another copy") from fault
+    except subprocess.TimeoutExpired as late:
+        raise InputError(f"{path} could not be read in {TIMEOUT_S:g} s; it is damaged: take another copy") from late
     if done.returncode:
-        said = " ".join(done.stderr.decode(errors="replace").split())[-200:] if done.returncode > 0 else "the C3D library crashed on it"
+        said = " ".join(done.stderr.decode(errors="replace").split())[-200:]
+        if done.returncode < 0:
+            out_of_time = -done.returncode in (signal.SIGXCPU, signal.SIGKILL)  # the soft limit's, and the hard one's
+            said = "it takes longer than a file of its size does" if out_of_time else "the C3D library crashed on it"
         raise InputError(f"{path} is no C3D file that can be read ({said}); export it again")
     with np.load(io.BytesIO(done.stdout), allow_pickle=False) as arrays:
         return {name: arrays[name] for name in ("points", "residuals", "said")}
@@ -93,7 +100,7 @@ def _frames(data: bytes, markers: int) -> tuple[int, int]:
     if len(data) < _BLOCK:
         return 0, 0
     parameters = (data[0] - 1) * _BLOCK
-    if parameters < 0 or parameters + 4 > len(data) or data[parameters + 3] != _INTEL:
+    if data[parameters + 3] != INTEL:
         return unknown
     analog, first, last, scale, start = struct.unpack_from("<4xHHH2xfH", data)
     size = (4 * markers + analog) * (4 if scale < 0 else 2)

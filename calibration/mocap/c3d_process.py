@@ -4,14 +4,19 @@ from __future__ import annotations
 
 import io
 import json
+import os
 import resource
 import sys
 from typing import Any
 
 import numpy as np
 
-#: The file's claims are not believed beyond this, bytes.
-MEMORY = 8 << 30
+#: What any file may take, bytes of addresses and seconds of the processor: Python and the library take 160 MB and 1 s of it.
+MEMORY, PROCESSOR_S = 1 << 30, 10
+#: What each of its bytes may take besides: points of two bytes a number become objects, lists and arrays, 20 bytes each, in 40 ns.
+MEMORY_PER_BYTE, PROCESSOR_S_PER_BYTE = 40, 1e-6
+#: No file takes more, bytes.
+MOST_MEMORY = 8 << 30
 
 
 def contents(path: str) -> dict[str, Any]:
@@ -33,11 +38,16 @@ def contents(path: str) -> dict[str, Any]:
 
 def main(path: str) -> int:
     """Write an archive of arrays; what the library had to say goes to standard error."""
-    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
-    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    size = os.stat(path).st_size
+    memory, processor_s = min(MEMORY + MEMORY_PER_BYTE * size, MOST_MEMORY), int(PROCESSOR_S + PROCESSOR_S_PER_BYTE * size)
+    for kind, limit in ((resource.RLIMIT_AS, memory), (resource.RLIMIT_CPU, processor_s), (resource.RLIMIT_CORE, 0)):
+        resource.setrlimit(kind, (limit, limit))
     try:
         arrays = contents(path)
-    except (RuntimeError, ValueError, IndexError, KeyError, OSError, MemoryError, OverflowError, TypeError) as fault:
+    except MemoryError:
+        sys.stderr.write("it claims more than a file of its size holds")
+        return 1
+    except (RuntimeError, ValueError, IndexError, KeyError, OSError, OverflowError, TypeError) as fault:
         sys.stderr.write(f"{type(fault).__name__}: {fault}")
         return 1
     stream = io.BytesIO()

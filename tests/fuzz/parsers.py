@@ -7,15 +7,19 @@ from __future__ import annotations
 
 import io
 import math
+import subprocess
 import zipfile
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from unittest import mock
 
+import forked
 import numpy as np
 import seeds
 
+from calibration.mocap.markers import read_markers
 from calibration.mocap.vicon import read_vicon
 from calibration.strain.document import load_calibration
 from gcode.check import judge
@@ -136,6 +140,13 @@ def _markers(path: Path) -> None:
     assert np.isfinite(made.time).all() and all(each.shape == (len(made.time), 3) for each in made.positions.values())
 
 
+def _c3d(path: Path) -> None:
+    with mock.patch.object(subprocess, "run", forked.run):
+        made = read_markers(path)
+    assert made.positions and all(each.shape == (len(made.time), 3) for each in made.positions.values())
+    assert np.isfinite(made.time).all() and not any("\n" in note for note in made.notes)
+
+
 def _printer(path: Path) -> None:
     assert min(load_printer(path).bed.size) > 0
 
@@ -196,5 +207,6 @@ PARSERS: dict[str, Parser] = {
     **_LOGS,
     "db3": Parser(_log, partial(seeds.logs, "bag"), ".db3"),
     "vicon": Parser(_markers, seeds.captures, ".csv"),
+    "c3d": Parser(_c3d, seeds.c3d, ".c3d"),
     "calibration": Parser(_calibration, seeds.calibrations, ".json"),
 }

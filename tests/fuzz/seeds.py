@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import io
 import tempfile
 import zipfile
@@ -117,6 +118,25 @@ def captures() -> list[bytes]:
         (head + "1,0,1,2,3,4,5,6\n2,0,1,2,3,,,\n").encode(),
         cut.replace(",", ";").replace(".", ",").encode(),
     ]
+
+
+@cache
+def c3d() -> list[bytes]:
+    import ezc3d
+
+    file = ezc3d.c3d()
+    file["parameters"]["POINT"]["RATE"]["value"] = [100.0]
+    file["parameters"]["POINT"]["UNITS"]["value"] = ["mm"]
+    file["parameters"]["POINT"]["LABELS"]["value"] = ("MCP", "PIP")
+    file["data"]["points"] = np.arange(24.0).reshape(4, 2, 3) + 1
+    analog = copy.deepcopy(file)
+    analog["parameters"]["ANALOG"]["RATE"]["value"] = [200.0]
+    analog["parameters"]["ANALOG"]["LABELS"]["value"] = ("force",)
+    analog["data"]["analogs"] = np.ones((1, 1, 6))
+    with tempfile.TemporaryDirectory() as folder:
+        for each, name in ((file, "a.c3d"), (analog, "b.c3d")):
+            each.write(str(Path(folder, name)))
+        return [Path(folder, name).read_bytes() for name in ("a.c3d", "b.c3d")]
 
 
 def calibrations() -> list[bytes]:

@@ -1,5 +1,8 @@
 """C3D: what ezc3d wrote comes back in mm, gaps of every kind are gaps, and damaged files end in one line."""
 
+import resource
+import signal
+import subprocess
 from pathlib import Path
 
 import ezc3d
@@ -7,6 +10,7 @@ import numpy as np
 import pytest
 from captures import positions, write_c3d
 
+from calibration.mocap import c3d_process
 from calibration.mocap.markers import read_markers
 from skinfab.errors import InputError
 
@@ -117,3 +121,36 @@ def test_a_calibration_py_of_the_users_does_no_harm(tmp_path: Path, monkeypatch:
     (tmp_path / "calibration.py").write_text("raise SystemExit('this is the user own script')\n")
     monkeypatch.chdir(tmp_path)
     assert len(read_markers("a.c3d").time) == 10
+
+
+def test_parameters_cut_off_are_refused_before_the_library_reads_them(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It would do so for ever: found by a search."""
+    write_c3d(tmp_path / "a.c3d", positions(5))
+    (tmp_path / "a.c3d").write_bytes((tmp_path / "a.c3d").read_bytes()[:799])
+    monkeypatch.setattr(subprocess, "run", lambda *_, **__: pytest.fail("the library was asked"))
+    with pytest.raises(InputError, match="its parameters are cut off"):
+        read_markers(tmp_path / "a.c3d")
+
+
+@pytest.mark.parametrize(
+    ("code", "says"), [(signal.SIGXCPU, "takes longer than a file of its size"), (signal.SIGSEGV, "library crashed on it")]
+)
+def test_a_process_that_was_ended_says_why(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, code: int, says: str) -> None:
+    write_c3d(tmp_path / "a.c3d", positions(5))
+    monkeypatch.setattr(subprocess, "run", lambda command, **_: subprocess.CompletedProcess(command, -code, b"", b""))
+    with pytest.raises(InputError, match=says):
+        read_markers(tmp_path / "a.c3d")
+
+
+def test_memory_and_time_are_by_the_files_size(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    def claim(_: str) -> dict[str, object]:
+        raise MemoryError
+
+    (tmp_path / "a.c3d").write_bytes(bytes(5_000_000))
+    limits: dict[int, tuple[int, int]] = {}
+    monkeypatch.setattr(resource, "setrlimit", limits.__setitem__)
+    monkeypatch.setattr(c3d_process, "contents", claim)
+    assert c3d_process.main(str(tmp_path / "a.c3d")) == 1
+    assert "claims more than a file of its size holds" in capsys.readouterr().err
+    most = (1 << 30) + 40 * 5_000_000
+    assert limits == {resource.RLIMIT_AS: (most, most), resource.RLIMIT_CPU: (15, 15), resource.RLIMIT_CORE: (0, 0)}
