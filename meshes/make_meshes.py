@@ -85,7 +85,7 @@ def cup() -> Mesh:
     return _largest_outward(_remesh(_from_manifold(solid), 2.4, feature_deg=30.0), "cup")
 
 
-def grip() -> Mesh:
+def grip(faces: int = GRIP_FACES) -> Mesh:
     """An irregular hand-dynamometer-like grip after the Jamar: two bowed bars joined by a gauge bulge."""
     low, high, step = np.array([-46.0, -66, -24]), np.array([46.0, 90, 24]), 1.0
     shape = ((high - low) / step).astype(int) + 1
@@ -93,8 +93,8 @@ def grip() -> Mesh:
     z, y, x = np.meshgrid(axes[2], axes[1], axes[0], indexing="ij")
     points = np.column_stack([x.ravel(), y.ravel(), z.ravel()])
     V, F = igl.marching_cubes(_grip_distance(points), points, *(int(n) for n in shape), 0.0)[:2]
-    fine = _remesh(Mesh(V, F), 0.76, feature_deg=180.0)
-    reduced = _decimate(fine, GRIP_FACES)
+    fine = _remesh(Mesh(V, F), 0.76 * (GRIP_FACES / faces) ** 0.5, feature_deg=180.0)
+    reduced = _decimate(fine, faces)
     return _largest_outward(Mesh(_project(reduced.V, _grip_distance), reduced.F), "grip")
 
 
