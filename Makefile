@@ -15,7 +15,8 @@ test: export OMP_NUM_THREADS = 1
 test: export OPENBLAS_NUM_THREADS = 1
 test: lint peers collected
 	@# Stealing leaves files whole but for a few: what the tests of a file share is made once. (loadgroup groups nothing with pytest 9.2 and xdist 3.8.)
-	$(PYTHON) -m pytest -q -W error -n 2 --dist worksteal --doctest-modules skinfab gcode calibration tests
+	@# What was run to have it compiled is not run once more.
+	$(PYTHON) -m pytest -q -W error -n 2 --dist worksteal --doctest-modules $(COMPILING:%=--ignore=%) skinfab gcode calibration tests
 
 # The tests' files are compiled here, while the linters and the peers leave a core free: both workers at once would do it twice.
 # So are the loops that numba compiles, by the tests that need most of them.
@@ -57,7 +58,7 @@ docs: setup
 SECONDS = 60
 fuzz: setup
 	@$(PYTHON) -c "import atheris" 2>/dev/null || tools/extra.sh fuzz
-	@for name in $$($(PYTHON) tests/fuzz/search.py); do $(PYTHON) tests/fuzz/search.py $$name $(SECONDS) || exit 1; done
+	@$(PYTHON) tests/fuzz/search.py $(SECONDS)
 
 pictures: demo
 	@mkdir -p docs/pictures
