@@ -11,7 +11,7 @@ import subprocess
 import zipfile
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 from unittest import mock
 
@@ -24,7 +24,7 @@ from calibration.mocap.vicon import read_vicon
 from calibration.strain.document import load_calibration
 from gcode.check import judge
 from gcode.parse import parse
-from gcode.printer import load_printer
+from gcode.printer import Printer, load_printer
 from gcode.words import read_text
 from skinfab.batch.plan import read_plan
 from skinfab.document import load_skin
@@ -108,10 +108,15 @@ def _skin_json(path: Path) -> None:
     _skin(document)
 
 
+@cache
+def _printers() -> tuple[Printer, ...]:
+    return load_printer("generic-marlin"), load_printer("generic-grbl")
+
+
 def _gcode(path: Path) -> None:
     text = read_text(path)
-    for name in ("generic-marlin", "generic-grbl"):
-        said = judge(text, load_printer(name))
+    for printer in _printers():
+        said = judge(text, printer)
         assert all("\n" not in str(finding) for finding in said.findings) and "\n" not in said.broken_off
     assert parse(text).steps is not None
 
