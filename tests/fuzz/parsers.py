@@ -10,6 +10,7 @@ import math
 import subprocess
 import zipfile
 from collections.abc import Callable
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from functools import cache, partial
 from pathlib import Path
@@ -93,14 +94,20 @@ def _mesh(path: Path) -> None:
     assert np.isfinite(usable.V).all() and (np.bincount(usable.F.ravel(), minlength=len(usable.V)) > 0).all()
 
 
+def _unchecked() -> AbstractContextManager[object]:
+    """A zip that is hit anywhere fails by its checksums and is looked at no further: somebody who means harm makes them right."""
+    return mock.patch.object(zipfile.ZipExtFile, "_update_crc", return_value=None)
+
+
 def _skin(path: Path) -> None:
-    skin = load_skin(path)
+    with _unchecked():
+        skin = load_skin(path)
     assert np.isfinite(skin.mesh.V).all() and all(np.isfinite(piece.UV).all() for piece in skin.pieces)
     assert all(math.isfinite(number) for s in skin.sensors for number in (s.x, s.y, s.angle)) and math.isfinite(skin.max_distortion)
 
 
 def _skin_json(path: Path) -> None:
-    """The document's text alone is broken: a zip that is hit anywhere fails by its checksums and is looked at no further."""
+    """The document's text alone is broken, and may become longer or shorter."""
     document = path.with_suffix(".skin")
     with zipfile.ZipFile(io.BytesIO(seeds.document())) as whole, zipfile.ZipFile(document, "w") as made:
         for name in whole.namelist():
@@ -183,7 +190,8 @@ def _wiring(path: Path) -> None:
 
 
 def _model(path: Path) -> None:
-    assert all(np.isfinite(array).all() for array in load_model(path, kind="nail").arrays.values())
+    with _unchecked():
+        assert all(np.isfinite(array).all() for array in load_model(path, kind="nail").arrays.values())
 
 
 def _calibration(path: Path) -> None:
