@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +16,8 @@ from gui.view3d.camera import SIDES
 from gui.view3d.hit import Hit
 
 MESHES = Path(__file__).parents[1] / "meshes"
+#: Seams that let cube.obj lie flat in one piece.
+CUBE_SPREAD = np.array([[0, 1], [1, 3], [2, 3], [2, 6], [6, 7], [5, 7], [4, 5]])
 
 #: Nothing that a test waits for takes so long, s, unless it never comes.
 PATIENCE = 60.0
@@ -88,6 +90,10 @@ class Person:
     def open(self, path: Path) -> None:
         self.app.files.open_path(path)
         self.wait()
+
+    def cut(self, seams: np.ndarray = CUBE_SPREAD, label: str = "cut") -> None:
+        """Other seams, as one step."""
+        self.session.do(label, replace(self.skin, seams=seams))
 
     def problems(self, kind: str = "error") -> list[str]:
         return [p.text for p in self.session.problems if p.kind == kind]
