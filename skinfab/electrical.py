@@ -71,16 +71,3 @@ def resistance(length: float, ink: Ink) -> Resistance:
     median = line + 2 * ink.contact_resistance_kohm
     spread = math.exp(_Z95 * ink.log_sigma)
     return Resistance(low=median / spread, median=median, high=median * spread)
-
-
-def strain_ratio(strain: float) -> float:
-    """R / R0 of an incompressible line stretched by `strain`: (1 + e)^2, longer and thinner at once.
-
-    Examples
-    --------
-    >>> round(strain_ratio(0.1), 6)
-    1.21
-    """
-    if not strain > -1:
-        raise InputError(f"strain is {strain:g}; a line cannot shrink to nothing, it must be above -1")
-    return (1 + strain) ** 2

@@ -2,20 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Protocol, TypeAlias
+from typing import TypeAlias
 
 from gui.view2d.hit import Hit2D
 from gui.view3d.hit import Hit
 
 #: A place on the object, clicked in either view: both know face, barycentric, point, vertex, edge and target.
 AnyHit: TypeAlias = Hit | Hit2D
-
-
-class Views(Protocol):
-    """Where a tool shows what it is about to do, mm on the object."""
-
-    def show(self, name: str, lines: list[object], colour: str, width: float) -> None: ...
-    def hide(self, name: str) -> None: ...
 
 
 class Tool:

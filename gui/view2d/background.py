@@ -40,8 +40,6 @@ class Ground:
     marks : SeamMarks, optional
     zero : (2,) float, mm of the sheet
         Where the rulers begin to count.
-    zero_name : str
-        Whose place that is.
     grid : bool
     """
 
@@ -52,7 +50,6 @@ class Ground:
     shading: str
     marks: SeamMarks | None
     zero: Float
-    zero_name: str
     grid: bool = True
 
 

@@ -247,9 +247,7 @@ class View2D(ttk.Frame):
         self._drawn_zero = self._zero()
         colours = face_colours(skin, self.derived, self.session.shading, self.theme)
         zero = sheet.offset_of(self._drawn_zero)
-        ground = Ground(
-            sheet, self.plane, self.theme, colours, self.session.shading, skin.marks, zero, self._drawn_zero, grid=self.grid_shown
-        )
+        ground = Ground(sheet, self.plane, self.theme, colours, self.session.shading, skin.marks, zero, grid=self.grid_shown)
         paint_faces(ground, self._triangles, self.surface.picture)
         paint_lines(ground, pen)
         marker = self._marker(pen, sheet)

@@ -64,12 +64,6 @@ def local_triangles(V: FloatArray, F: NDArray[np.int64]) -> FloatArray:
     return np.stack([np.stack([length, np.zeros_like(length)], axis=1), np.stack([along, up], axis=1)], axis=1)
 
 
-def jacobians(V: FloatArray, F: NDArray[np.int64], UV: FloatArray) -> FloatArray:
-    """Jacobian of the map object -> flat of each triangle, in its local frame, (m, 2, 2)."""
-    a, b, c, d = _entries(_in_plane(V, F), F, UV)
-    return np.stack([np.stack([a, b], axis=1), np.stack([c, d], axis=1)], axis=1)
-
-
 def _in_plane(V: FloatArray, F: NDArray[np.int64]) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Of each triangle in its own plane, (m,) each: length of edge 0-1, and corner 2 along and above it. Column by column, for speed."""
     a, b, c = np.ascontiguousarray(F.T)

@@ -135,11 +135,6 @@ def distance_within(one: Curves, two: Curves, reach: float) -> float:
     return apart if apart < reach else math.inf
 
 
-def path_distance(one: Path, two: Path) -> float:
-    """Least distance between two paths' centre lines, mm."""
-    return distance(Curves.of_segments(one.segments), Curves.of_segments(two.segments))
-
-
 def self_distance(path: Path, *, apart: float) -> float:
     """Closest approach of a path to itself between points at least `apart` mm from each other along it.
 

@@ -6,7 +6,7 @@ import shapes
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from skinfab.flatten.distortion import best_scale, distortion_of, jacobians, local_triangles, measure, singular_values
+from skinfab.flatten.distortion import best_scale, distortion_of, local_triangles, measure, singular_values
 
 few = settings(max_examples=25, deadline=None)
 seeds = st.integers(0, 10_000)
@@ -21,17 +21,9 @@ def random_map(seed: int):
 
 @few
 @given(seeds)
-def test_jacobian_takes_the_triangle_to_its_flat_shape(seed: int) -> None:
-    V, F, UV = random_map(seed)
-    flat = UV[F[:, 1:]] - UV[F[:, :1]]
-    np.testing.assert_allclose(local_triangles(V, F) @ jacobians(V, F, UV).transpose(0, 2, 1), flat, atol=1e-9)
-
-
-@few
-@given(seeds)
 def test_singular_values_and_sign_as_numpy_has_them(seed: int) -> None:
     V, F, UV = random_map(seed)
-    J = jacobians(V, F, UV)
+    J = np.linalg.solve(local_triangles(V, F), UV[F[:, 1:]] - UV[F[:, :1]]).transpose(0, 2, 1)
     s = singular_values(V, F, UV)
     np.testing.assert_allclose(np.abs(s), np.linalg.svd(J, compute_uv=False), rtol=1e-9, atol=1e-9 * np.abs(s).max())
     np.testing.assert_allclose(s.prod(axis=1), np.linalg.det(J), rtol=1e-6, atol=1e-9 * np.abs(s).max() ** 2)

@@ -11,7 +11,7 @@ from scipy.spatial import cKDTree
 from skinfab.paths import Arc, Line, Path
 from skinfab.patterns.contact_spiral import ContactSpiral
 from skinfab.patterns.strain_lines import StrainLines
-from skinfab.placement.distance import Curves, distance, distance_within, path_distance, self_distance
+from skinfab.placement.distance import Curves, distance, distance_within, self_distance
 
 points = st.tuples(st.floats(-20, 20), st.floats(-20, 20))
 segments = st.one_of(
@@ -57,10 +57,11 @@ def test_an_arc_is_not_its_chords() -> None:
 
 
 def test_concentric_and_contained_arcs() -> None:
-    inner, outer = Path((Arc((0, 0), 3.0, 0.1, 2.0),)), Path((Arc((0, 0), 5.0, 1.0, 2.0),))
-    assert path_distance(inner, outer) == pytest.approx(2)
-    off_centre = Path((Arc((1, 0), 1.0, 0.0, 2 * math.pi),))
-    assert path_distance(off_centre, Path((Arc((0, 0), 3.0, 0.0, 2 * math.pi),))) == pytest.approx(1)
+    def apart(one: Arc, two: Arc) -> float:
+        return distance(Curves.of_segments([one]), Curves.of_segments([two]))
+
+    assert apart(Arc((0, 0), 3.0, 0.1, 2.0), Arc((0, 0), 5.0, 1.0, 2.0)) == pytest.approx(2)
+    assert apart(Arc((1, 0), 1.0, 0.0, 2 * math.pi), Arc((0, 0), 3.0, 0.0, 2 * math.pi)) == pytest.approx(1)
 
 
 def test_an_edge_without_length_is_a_point() -> None:

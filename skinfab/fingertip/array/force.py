@@ -14,15 +14,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from skinfab.errors import InputError, RefusedError
 from skinfab.fingertip.array.geometry import Geometry
-from skinfab.fingertip.array.matched import ArrayModel, Matcher
-from skinfab.fingertip.array.response import add_force
 from skinfab.fingertip.array.simulator import Rubber
 from skinfab.tolerances import COMPRESSIBLE, SPLIT_UNEXPLAINED
 
@@ -152,82 +149,3 @@ def angle_by_split(
             f"no angle of force fits this profile: {100 * found.fun:.0f} % of it are left over; it is not that of one contact in the middle"
         )
     return math.atan(ratio)
-
-
-@dataclass(frozen=True)
-class Push:
-    """A force on a point.
-
-    Parameters
-    ----------
-    axial_mm, angle_rad : float
-        Where.
-    normal_n, along_n, around_n : float
-    unexplained : float
-        Sum of squares that is left, as a part of that of the readings.
-    """
-
-    axial_mm: float
-    angle_rad: float
-    normal_n: float
-    along_n: float
-    around_n: float
-    unexplained: float
-
-    @property
-    def tilt_rad(self) -> tuple[float, float]:
-        """Angle of the force from the normal, along and around."""
-        return math.atan2(self.along_n, self.normal_n), math.atan2(self.around_n, self.normal_n)
-
-
-def match_push(model: ArrayModel, Z: FloatArray) -> Push:
-    """The force, not only normal, whose computed readings are nearest to those read.
-
-    The three parts are linear, and are found exactly for each place that is tried (variable projection).
-
-    Raises
-    ------
-    InputError
-        No tactel reads anything.
-
-    Examples
-    --------
-    >>> from skinfab.fingertip.array.simulator import Skin
-    >>> seed = Geometry()
-    >>> Z = Skin(seed).pressed(0.5, axial_mm=13.0, angle_rad=0.3, shear_n=(0.1, -0.05))
-    >>> push = match_push(ArrayModel.nominal(seed), Z)
-    >>> [round(value, 3) for value in (push.normal_n, push.along_n, push.around_n)]
-    [0.5, 0.1, -0.05]
-    """
-    from scipy.optimize import least_squares
-
-    known = np.isfinite(Z) & (model.gains != 0)
-    if not known.any() or not float(Z[known].max()) > 0:
-        raise InputError("no tactel reads a deflection; press the array")
-    g, scale = model.geometry, model.gains / model.rubber.young
-    weights = known.astype(float).ravel()
-    z = np.where(known, Z, 0.0).ravel()
-
-    def basis(at: FloatArray) -> FloatArray:
-        columns = np.zeros((3, *g.shape))
-        for k, force in enumerate(((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))):
-            add_force(columns[k], force, (float(at[0]), float(at[1])), g.pitch, g.half, g.skin, model.rubber.poisson)
-        out: FloatArray = (columns * scale).reshape(3, -1).T * weights[:, None]
-        return out
-
-    def left(at: FloatArray) -> FloatArray:
-        B = basis(at)
-        out: FloatArray = z - B @ np.linalg.lstsq(B, z, rcond=None)[0]
-        return out
-
-    x, s, *_ = Matcher(model).one(Z)
-    found = least_squares(left, [x, s], x_scale=[g.ring_pitch, g.stripe_pitch], xtol=1e-6)
-    parts = np.linalg.lstsq(basis(found.x), z, rcond=None)[0]
-    return Push(
-        float(found.x[0]),
-        math.remainder(float(found.x[1]) / g.core_radius, math.tau),
-        float(parts[0]),
-        float(parts[1]),
-        float(parts[2]),
-        float(2 * found.cost / (z @ z)),
-    )

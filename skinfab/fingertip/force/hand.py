@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from skinfab.errors import InputError
-from skinfab.fingertip.force.wrench import SensorNoise
 
 FloatArray = NDArray[np.float64]
 
@@ -78,11 +77,4 @@ def hand_wrench(fingers: list[Finger], wrenches: ArrayLike) -> FloatArray:
     if w.ndim != 3 or w.shape[0] != len(fingers) or w.shape[2] != 6:
         raise InputError(f"wrenches have the shape {w.shape}, and {len(fingers)} fingers need ({len(fingers)}, n, 6)")
     out: FloatArray = sum((w[k] @ finger.transform.T for k, finger in enumerate(fingers)), np.zeros(w.shape[1:]))
-    return out
-
-
-def hand_covariance(fingers: list[Finger], noise: SensorNoise) -> FloatArray:
-    """Covariance (6, 6) of the hand's force and moment; a finger's force noise is a moment by the finger's arm."""
-    own = np.diag([noise.force_n**2] * 3 + [noise.moment_nmm**2] * 3)
-    out: FloatArray = sum((f.transform @ own @ f.transform.T for f in fingers), np.zeros((6, 6)))
     return out

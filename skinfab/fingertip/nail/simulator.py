@@ -24,7 +24,6 @@ from skinfab.fingertip.nail.finger import EDGE_POINTS, ComplexArray, Finger, con
 from skinfab.fingertip.nail.patterns import Pattern
 from skinfab.fingertip.nail.units import CHANNELS
 from skinfab.readout.frame import Channel, Frame, Recording, Stream
-from skinfab.readout.paced import PacedFrames
 
 FloatArray = NDArray[np.float64]
 
@@ -278,24 +277,3 @@ def nail_frames(
             time = k / RATE_HZ
             yield Frame(time, time, k, values, np.ones(len(values), dtype=bool), stream.saturated(values))
             k += 1
-
-
-def simulated_nail(
-    finger: Finger,
-    patterns: Sequence[Pattern | None],
-    *,
-    hold_s: float = 2.0,
-    seed: int = 0,
-    scene: Scene | None = None,
-    in_time: bool = True,
-) -> PacedFrames:
-    """The simulator as a source.
-
-    Examples
-    --------
-    >>> with simulated_nail(participant(np.random.default_rng(0)), [None], in_time=False) as source:
-    ...     frame = source.read()
-    >>> frame.values.shape, source.stream.simulated
-    ((6,), True)
-    """
-    return PacedFrames(nail_stream(scene), lambda: nail_frames(finger, patterns, hold_s=hold_s, seed=seed, scene=scene), in_time=in_time)

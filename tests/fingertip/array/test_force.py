@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 
 from skinfab.errors import InputError, RefusedError
-from skinfab.fingertip.array.force import angle_by_split, line_force, match_push, point_force, split, strain_under_line
+from skinfab.fingertip.array.force import angle_by_split, line_force, point_force, split, strain_under_line
 from skinfab.fingertip.array.geometry import Geometry
-from skinfab.fingertip.array.matched import ArrayModel
-from skinfab.fingertip.array.simulator import Device, Rubber, Skin
+from skinfab.fingertip.array.simulator import Rubber, Skin
 
 SEED = Geometry()
 
@@ -48,26 +47,6 @@ def test_odd_and_even() -> None:
     assert (even, odd) == pytest.approx((3.0, -0.5))
 
 
-def test_push_without_noise_is_exact() -> None:
-    Z = Skin(SEED).pressed(0.8, axial_mm=9.0, angle_rad=-2.0, shear_n=(-0.2, 0.3))
-    push = match_push(ArrayModel.nominal(SEED), Z)
-    assert (push.normal_n, push.along_n, push.around_n) == pytest.approx((0.8, -0.2, 0.3), abs=1e-3)
-    assert push.tilt_rad == pytest.approx((math.atan2(-0.2, 0.8), math.atan2(0.3, 0.8)), abs=2e-3)
-
-
-def test_push_of_a_noisy_array() -> None:
-    rng, device = np.random.default_rng(0), Device(seed=2)
-    model = ArrayModel(SEED, Rubber(), device.skin.gains)
-    off = []
-    for _ in range(12):
-        axial, angle = rng.uniform(8, 18), rng.uniform(-3, 3)
-        Z = device.noisy(device.skin.pressed(1.0, axial_mm=axial, angle_rad=angle, shear_n=(0.3, 0.0)), rng)
-        off.append(math.degrees(match_push(model, Z).tilt_rad[0] - math.atan(0.3)))
-    assert np.sqrt(np.mean(np.square(off))) < 4
-
-
 def test_what_has_no_force() -> None:
-    with pytest.raises(InputError, match="press the array"):
-        match_push(ArrayModel.nominal(SEED), np.zeros((8, 8)))
     with pytest.raises(RefusedError, match="sum up to nothing"):
         point_force(Skin(SEED).pressed(1.0, axial_mm=13.0, angle_rad=0.0), SEED, Rubber())

@@ -15,13 +15,11 @@ from skinfab.fingertip.nail.simulator import (
     RATE_HZ,
     Scene,
     nail_frames,
-    nail_stream,
     participant,
     phasors,
     readings,
     record,
     running,
-    simulated_nail,
     touch,
 )
 
@@ -117,8 +115,6 @@ def test_live_frames_are_at_the_sensors_rate_and_go_through_the_patterns(finger:
     np.testing.assert_array_equal([f.values for f in frames], [f.values for f in again])
     loud = np.array([f.values[4] for f in frames]).reshape(3, 140).std(axis=1)
     assert loud[1] < 0.9 * loud[0] and loud[2] == pytest.approx(loud[0], rel=0.1)  # air, edge, air
-    with simulated_nail(finger, [None], in_time=False) as source:
-        assert source.read() is not None and source.stream == nail_stream() and source.stream.simulated
 
 
 def test_no_reading_at_all_is_refused(finger: Finger) -> None:

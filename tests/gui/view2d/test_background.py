@@ -33,6 +33,6 @@ def test_a_cut_that_reaches_no_border_is_a_seam_and_a_hole_of_the_object_is_none
     none = np.full(2, -1)
     sheet.__dict__["edges"] = Edges(ends, np.array([inside, border]), np.zeros(2, dtype=int), none)
     pen, plane = Drawn(), Plane()
-    paint_lines(Ground(sheet, plane, LIGHT, np.zeros((0, 3), np.uint8), "pieces", None, np.zeros(2), "", grid=False), pen)
+    paint_lines(Ground(sheet, plane, LIGHT, np.zeros((0, 3), np.uint8), "pieces", None, np.zeros(2), grid=False), pen)
     colours = [next(colour for part, colour in pen.strokes if np.array_equal(part, plane.to_px(each))) for each in ends]
     assert colours == [LIGHT.seam, LIGHT.text]
