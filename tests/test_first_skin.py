@@ -52,3 +52,9 @@ def test_followed_by_the_letter(
 def test_words_are_compared_and_numbers_are_not() -> None:
     assert words("made in 2.4 s,  -3 of 1,000") == "made in N s, N of N" != words("made in 2.4 min, -3 of 1,000")
     assert boxes("```sh\na\nb\n```\n\n```text\nc\n```\n```sh\nd\n```\n") == [(["a", "b"], ["c"]), (["d"], [])]
+
+
+def test_what_the_page_makes_is_no_change_of_the_repository() -> None:
+    made = {Path(name) for commands, _ in boxes(PAGE.read_text()) for name in re.findall(r" -o (\S+)", "\n".join(commands))}
+    ignored = {Path(line.strip("/")) for line in (ROOT / ".gitignore").read_text().splitlines() if line.startswith("/")}
+    assert len(made) >= 7 and made <= ignored
