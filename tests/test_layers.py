@@ -1,14 +1,25 @@
 """The plan of the rooms holds: imports run one way, files stay readable, and the library does not print."""
 
 import ast
-from collections.abc import Iterator
+import importlib.util
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 
 ROOT = Path(__file__).resolve().parent.parent
-PACKAGES = ("skinfab", "gcode", "gui", "calibration")
 MAX_LINES = 400
+
+
+def tool() -> ModuleType:
+    spec = importlib.util.spec_from_file_location("rooms", ROOT / "tools/rooms.py")
+    assert spec is not None and spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+ROOMS = tool()
 
 #: Who may import whom among the four packages.
 ALLOWED = {
@@ -28,41 +39,15 @@ FLOORS = (
     (
         *("document", "document_parts"),
         *("mould", "mould_plan", "mould_taper", "strip_plate", "wiring", "wired", "wire_exits", "wire_ways", "wire_choice"),
-        *("recipe", "work_order", "drawings", "report"),
+        *("recipe", "work_order", "drawings", "report", "bench"),
     ),
-    ("cli", "bench", "batch", "__main__"),
+    ("cli", "batch", "__main__"),
 )
 FLOOR_OF = {room: k for k, rooms in enumerate(FLOORS) for room in rooms}
 
 
 def sources() -> list[Path]:
-    return sorted(p for package in PACKAGES for p in (ROOT / package).rglob("*.py"))
-
-
-def imported(tree: ast.Module) -> Iterator[tuple[str, bool]]:
-    """Every module a file imports, and whether it does so when it is itself imported."""
-    for node, at_import in statements(tree.body):
-        if isinstance(node, ast.Import):
-            for alias in node.names:
-                yield alias.name, at_import
-        elif isinstance(node, ast.ImportFrom):
-            assert node.level == 0, "imports are absolute here"
-            for alias in node.names:
-                yield f"{node.module}.{alias.name}", at_import
-
-
-def statements(body: list[ast.stmt], at_import: bool = True) -> Iterator[tuple[ast.stmt, bool]]:
-    """Each statement, those inside others too, and whether it is run when the file is imported."""
-    for node in body:
-        yield node, at_import
-        inside = at_import and not isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef) and not is_type_checking(node)
-        for held in (node, *getattr(node, "handlers", ()), *getattr(node, "cases", ())):
-            for part in ("body", "orelse", "finalbody"):
-                yield from statements(getattr(held, part, []), inside)
-
-
-def is_type_checking(node: ast.AST) -> bool:
-    return isinstance(node, ast.If) and ast.unparse(node.test).endswith("TYPE_CHECKING")
+    return sorted(p for package in ROOMS.PACKAGES for p in (ROOT / package).rglob("*.py"))
 
 
 def room_of(parts: tuple[str, ...]) -> str:
@@ -75,14 +60,12 @@ def backward_imports(path: Path, text: str) -> list[str]:
     parts = path.parts
     package, in_cli = parts[0], parts[:2] == ("skinfab", "cli")
     wrong = []
-    for name, at_import in imported(ast.parse(text)):
-        target = tuple(name.split("."))
-        if target[0] not in PACKAGES:
-            continue
+    for target, when in ROOMS.imports(text):
+        name = ".".join(target)
         if target[0] not in ALLOWED[package]:
             if not in_cli:
                 wrong.append(f"{package} imports {name}")
-            elif at_import:
+            elif when == ROOMS.AT_ONCE:
                 wrong.append(f"the command line imports {name} at once; import it inside the function")
         elif package == target[0] == "skinfab":
             here, there = room_of(parts), room_of(target) if len(target) > 1 and target[1] in FLOOR_OF else "__init__"
@@ -141,6 +124,20 @@ def test_arrows_that_run_forwards_are_free() -> None:
     assert (
         backward_imports(Path("skinfab/cli/make.py"), "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    import gcode.program") == []
     )
+
+
+def test_the_table_of_the_rooms_is_as_the_code_is() -> None:
+    page = ROOMS.PAGE.read_text(encoding="utf-8")
+    assert page == ROOMS.written(page), "run tools/rooms.py --write"
+    rows = dict(line.strip("| ").split(" | ") for line in ROOMS.table().splitlines()[2:])
+    assert rows["mesh"] == "nothing but the ground" and "gcode" in rows["gui/state"]
+    assert "gcode" not in rows["cli"].split("(")[0] and "gcode" in rows["cli"], "only inside functions"
+
+
+def test_when_an_import_is_done() -> None:
+    text = "import gcode\nif TYPE_CHECKING:\n    import gui\nclass A:\n    import skinfab.mesh\n    def f():\n        import calibration\n"
+    found = {parts[0]: when for parts, when in ROOMS.imports(text + "import numpy")}
+    assert found == {"gcode": "at once", "gui": "types", "skinfab": "at once", "calibration": "later"}
 
 
 def test_a_print_is_found() -> None:
