@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from skinfab.bench.marked import png
+from skinfab.bench.marked import png, ring, save
 from skinfab.files import atomic_write
 
 #: Told apart without red and green, and in print.
@@ -46,7 +46,7 @@ def draw(table: Sequence[Mapping[str, Any]], path: Path) -> None:
                 axes.plot(row["us"], row["worst"], mark, color=_COLOURS[name], ms=6)
             axes.plot([], [], "-", color=_COLOURS[name], label=f"{name} (published)" if name in ("sinc", "span") else name)
             if name == "matched":
-                axes.plot(x[0], y[0], "o", ms=14, mfc="none", mec="#555555", mew=1.4)
+                ring(axes, x[0], y[0])
         for mark, density in zip(_MARKS, densities, strict=False):
             axes.plot([], [], mark, color="#777777", label=f"{density} tactels")
         axes.set(xscale="log", yscale="log", xlabel="processor time a frame, us", ylabel=f"worst error {label}")
@@ -58,7 +58,23 @@ def draw(table: Sequence[Mapping[str, Any]], path: Path) -> None:
     # One legend for all: the panels are full.
     handles = {label: handle for axes in figure.axes for handle, label in zip(*axes.get_legend_handles_labels(), strict=True)}
     figure.legend(list(handles.values()), list(handles), loc="outside lower center", ncols=5, fontsize=8)
-    atomic_write(path, png(figure))
+    save(figure, path, default=why(table))
+
+
+def why(table: Sequence[Mapping[str, Any]]) -> str:
+    """What the default is, and why, by the first density, which is the seed's."""
+    first = table[0]["density"]
+    by = {(row["experiment"], row["method"]): row for row in table if row["density"] == first}
+    said = []
+    for experiment, words in (("along", "mm along the finger"), ("around", "degrees around it"), ("line", "degrees of direction")):
+        old = by[experiment, "span" if experiment == "line" else "sinc"]
+        others = [
+            row["worst"] for (of, name), row in by.items() if of == experiment and name in _COLOURS and name != "matched" and row != old
+        ]
+        best = f", the best of the others {min(others):.2g}" if others else ""
+        own = by[experiment, "matched"]
+        said.append(f"{own['worst']:.2g} {words} at worst in {own['us']:.0f} us (published {old['worst']:.2g} in {old['us']:.0f}{best})")
+    return f"matched, on {first} tactels: {'; '.join(said)}; aliasing, not noise, is what the others err by"
 
 
 def draw_seed(path: Path, *, rods: int = 12) -> None:

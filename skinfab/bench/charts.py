@@ -7,10 +7,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from skinfab.bench.contestants import DEFAULT
-from skinfab.bench.marked import png
+from skinfab.bench.marked import ring, save
 from skinfab.bench.refinement import NEWTON
-from skinfab.bench.words import SAME_D, Table, pareto_front
-from skinfab.files import atomic_write
+from skinfab.bench.words import SAME_D, Table, pareto_front, why_isometric, why_newton
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -38,12 +37,11 @@ def draw_methods(table: Table, path: Path, *, notes: Sequence[str] = ()) -> None
         front = [usable[k] for k in pareto_front([(row["seconds"], row["mean_d"]) for row in usable])]
         axes.step([r["seconds"] for r in front], [r["mean_d"] - 4 for r in front], where="post", color=_FRONT, lw=1, zorder=1)
         chosen = next(row for row in rows if row["method"] == DEFAULT)
-        axes.plot(chosen["seconds"], chosen["mean_d"] - 4, "o", ms=15, mfc="none", color=_OURS, mew=1.8, zorder=4)
+        ring(axes, chosen["seconds"], chosen["mean_d"] - 4, color=_OURS)
         axes.set_title(f"{size} triangles")
         _name(axes, rows)
-    marks = "dots ours · squares peers · hollow: cut into pieces, flipped or overlapping · line: Pareto front · ring: the default"
-    figure.text(0.5, 0.012, "\n".join([marks, *notes]), ha="center", va="bottom", fontsize=8)
-    atomic_write(path, png(figure))
+    marks = "dots ours · squares peers · hollow: cut into pieces, flipped or overlapping · line: Pareto front"
+    save(figure, path, default=why_isometric(table), notes=[marks, *notes])
 
 
 def draw_refinement(refinement: Table, path: Path) -> None:
@@ -63,15 +61,14 @@ def draw_refinement(refinement: Table, path: Path) -> None:
             # The start is at no time at all, for which a logarithmic axis has no room: it is a line.
             axes.plot([row["seconds"] for row in rows[1:]], above[1:], mark, color=colour, ms=4, lw=1, label=name)
             if method == NEWTON:
+                ring(axes, rows[-1]["seconds"], above[-1], color=_OURS)
                 axes.axhline(above[0], color=_FRONT, lw=1, ls=":", label=f"BFF, the start: d {rows[0]['mean_d']:.5f}")
         axes.axhline(SAME_D - 1, color=_FRONT, lw=1, ls="--", label=f"within {SAME_D - 1:.1%}: compared here")
         axes.set_title(f"{size} triangles")
         axes.legend(fontsize=8, loc="upper right", bbox_to_anchor=(1, 0.93))
     panels[0].set_ylabel("(mean d - least d) / (least d - 4)")
-    figure.text(
-        0.5, 0.02, f"the least d is drawn at {_FLOOR:g}; processor time since the start, setting up included", ha="center", fontsize=8
-    )
-    atomic_write(path, png(figure))
+    marks = f"the least d is drawn at {_FLOOR:g}; processor time since the start, setting up included"
+    save(figure, path, default=why_newton(refinement), notes=[marks])
 
 
 def _panels(count: int, title: str) -> tuple[Figure, list[Axes]]:
@@ -81,7 +78,7 @@ def _panels(count: int, title: str) -> tuple[Figure, list[Axes]]:
 
     figure = Figure(figsize=(_WIDTH * count, _HEIGHT), dpi=_DPI)
     FigureCanvasAgg(figure)  # names are placed by their extent, which only a canvas that draws knows
-    figure.subplots_adjust(left=0.16 / count + 0.015, right=0.985, top=0.88, bottom=0.17, wspace=0.05)
+    figure.subplots_adjust(left=0.16 / count + 0.015, right=0.985, top=0.88, bottom=0.2, wspace=0.05)
     figure.suptitle(title)
     panels = list(figure.subplots(1, count, squeeze=False, sharey=True)[0])
     for axes in panels:

@@ -7,21 +7,19 @@ from pathlib import Path
 from typing import Any
 
 from skinfab.bench.gravity import USUAL, paper_errors
-from skinfab.bench.marked import png
-from skinfab.files import atomic_write
+from skinfab.bench.marked import ring, save
 
 _COLOURS = {"published": "#D55E00", "offset fitted": "#0072B2", "hand weighed": "#009E73"}
+_DEFAULT = "offset fitted"
 _DPI = 150
 
 
 def draw(table: Sequence[Mapping[str, Any]], path: Path) -> None:
     """Write the chart as PNG: error over span and over poses, and what part of the errors the stated 95 % hold."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
     from matplotlib.ticker import LogLocator, NullFormatter
 
     figure = Figure(figsize=(11.0, 3.9), dpi=_DPI, layout="constrained")
-    FigureCanvasAgg(figure)
     figure.suptitle("Centre of gravity: how the hand is turned against the error (simulated)", fontsize=10)
     panels = figure.subplots(1, 3)
     asked = ((panels[0], "span_deg", "median_mm"), (panels[1], "poses", "median_mm"), (panels[2], "span_deg", "covered"))
@@ -32,9 +30,9 @@ def draw(table: Sequence[Mapping[str, Any]], path: Path) -> None:
             axes.plot([r[over] for r in rows], [r[key] for r in rows], "o-", color=colour, ms=4, lw=1, label=way)
             if key == "median_mm":
                 axes.plot([r[over] for r in rows], [r["p95_mm"] for r in rows], ":", color=colour, lw=1, label=f"{way}, 95 %")
-            usual = [r for r in rows if r[over] == (USUAL[0] if over == "span_deg" else USUAL[1]) and way == "offset fitted"]
-            for r in usual:
-                axes.plot(r[over], r[key], "o", ms=14, mfc="none", mec="#555555", mew=1.4, label="as simulate makes it", zorder=1)
+            for r in rows:
+                if (way, r["span_deg"], r["poses"]) == (_DEFAULT, *USUAL):
+                    ring(axes, r[over], r[key])
         axes.set_xscale("log")
         ticks = sorted({row[over] for row in table})
         axes.set_xticks(ticks, [f"{each:g}" for each in ticks], fontsize=8)
@@ -52,4 +50,22 @@ def draw(table: Sequence[Mapping[str, Any]], path: Path) -> None:
     panels[2].set(ylabel="errors within the stated 95 %", ylim=(0, 1.02))
     # The third panel is empty where the first two are full.
     panels[2].legend(*panels[0].get_legend_handles_labels(), fontsize=7, markerscale=0.6, loc="center right")
-    atomic_write(path, png(figure))
+    save(figure, path, default=why(table))
+
+
+def why(table: Sequence[Mapping[str, Any]]) -> str:
+    """What the default is, and why: its own poses, the next fewer and narrower and the next more and wider."""
+    own = {(row["span_deg"], row["poses"]): row["median_mm"] for row in table if row["way"] == _DEFAULT}
+    span, poses = USUAL
+    beside = [f"{n} poses {own[span, n]:.2f}" for n in _next_to(poses, [n for s, n in own if s == span])]
+    beside += [f"within {s:g} degrees {own[s, poses]:.2f}" for s in _next_to(span, [s for s, n in own if n == poses])]
+    return (
+        f"{_DEFAULT}, from {poses} poses within {span:g} degrees, as simulate makes them: a median error of {own[USUAL]:.2f} mm "
+        f"({', '.join(beside)}), and no hand need be weighed before"
+    )
+
+
+def _next_to(value: float, values: Sequence[float]) -> list[float]:
+    """The next smaller and the next larger one."""
+    ends = max((v for v in values if v < value), default=None), min((v for v in values if v > value), default=None)
+    return [end for end in ends if end is not None]

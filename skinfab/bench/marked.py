@@ -19,6 +19,8 @@ _GREY = "#555555"
 _RING = "ring of the default"
 #: Letters of 8 points in an inch, and the width of the margins.
 _LETTERS_AN_INCH, _MARGINS_INCHES, _SIZE = 15, 0.6, 8
+#: Height of a line of them, and what is left free below.
+_LINE_INCHES, _PAD_INCHES = 0.14, 0.06
 
 
 def ring(axes: Axes, x: float, y: float, *, size: float = 14, color: str = _GREY, label: str | None = None) -> None:
@@ -57,14 +59,26 @@ def save(figure: Figure, path: Path, *, default: str, notes: Sequence[str] = ())
     ...     (Path(folder) / "a.png").read_bytes()[1:4]
     b'PNG'
     """
+    from matplotlib.layout_engine import ConstrainedLayoutEngine
+
     if not any(artist.get_gid() == _RING for axes in figure.axes for artist in axes.lines):
         raise ValueError(f"{path.name}: the default is marked nowhere; draw a ring round its point")
     what, _, why = default.partition(": ")
     if not (what and why):
         raise ValueError(f"{path.name}: {default!r} does not say what the default is and, after a colon, why")
     letters = round(_LETTERS_AN_INCH * (figure.get_figwidth() - _MARGINS_INCHES))
-    # A figure's own label of x is what both kinds of layout put below everything else.
-    figure.supxlabel("\n".join(fill(line, letters) for line in (f"ring: the default, {default}", *notes)), fontsize=_SIZE)
+    words = "\n".join(fill(line, letters) for line in (f"ring: the default, {default}", *notes))
+    inches = _PAD_INCHES + _LINE_INCHES * (words.count("\n") + 1)
+    if isinstance(layout := figure.get_layout_engine(), ConstrainedLayoutEngine):
+        # A strip for the words is added below; keys outside of the panels stand above it, and the panels above these.
+        figure.set_figheight(figure.get_figheight() + inches)
+        figure.draw_without_rendering()
+        keys = max((key.get_window_extent().height / figure.dpi + 2 * _PAD_INCHES for key in figure.legends), default=0.0)
+        words_part, both_part = inches / figure.get_figheight(), (inches + keys) / figure.get_figheight()
+        layout.set(rect=(0, both_part, 1, 1 - both_part))
+        for key in figure.legends:
+            key.set_bbox_to_anchor((0, words_part, 1, 1 - words_part), transform=figure.transFigure)
+    figure.text(0.5, _PAD_INCHES / figure.get_figheight(), words, ha="center", va="bottom", fontsize=_SIZE)
     atomic_write(path, png(figure, description=f"The default is {default}."))
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from skinfab.bench.marked import png
+from skinfab.bench.marked import png, ring, save
 from skinfab.files import atomic_write
 from skinfab.fingertip.nail.patterns import TESTS
 from skinfab.fingertip.nail.protocol import Outcome
@@ -56,12 +56,22 @@ def draw_accuracy(table: Sequence[Mapping[str, Any]], path: Path) -> None:
                 )
         better = next(r for r in table if r["test"] == test and r["method"] == "improved")
         axes.plot(0, better["percent"], "^", color=_IMPROVED, ms=8, label="improved method")
+        ring(axes, 0, better["percent"], size=16)
         axes.set_xticks(at, [r["condition"] for r in rows], rotation=90, fontsize=7)
         axes.set(title=test, ylim=(0, _TOP), yticks=range(0, 101, 20))
     figure.axes[0].set_ylabel("right, %")
     named = {name: mark for axes in figure.axes for mark, name in zip(*axes.get_legend_handles_labels(), strict=True)}
     figure.legend(named.values(), named.keys(), loc="outside lower center", ncols=len(named), fontsize=8)
-    atomic_write(path, png(figure))
+    save(figure, path, default=why(table))
+
+
+def why(table: Sequence[Mapping[str, Any]]) -> str:
+    """What the default is, and why."""
+    said = []
+    for better in (row for row in table if row["method"] == "improved"):
+        published = [row["percent"] for row in table if (row["test"], row["method"]) == (better["test"], "published")]
+        said.append(f"{better['test']} {better['percent']:.1f} % (published, under any condition, {max(published):.1f} at best)")
+    return f"the improved method, on all six channels: {', '.join(said)}"
 
 
 def draw_confusion(outcome: Outcome, path: Path) -> None:

@@ -6,8 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from skinfab.bench.marked import png
-from skinfab.files import atomic_write
+from skinfab.bench.marked import ring, save
 
 #: Told apart without red and green, and in print.
 _STYLES = {
@@ -20,11 +19,9 @@ _DPI = 150
 
 def draw(table: Sequence[Mapping[str, Any]], path: Path) -> None:
     """Write the chart as PNG; what `skinfab nail run` does is ringed."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(13.2, 4.2), dpi=_DPI, layout="constrained")
-    FigureCanvasAgg(figure)
     figure.suptitle("Twelve edges: how long one must look (simulated participants)", fontsize=10)
     window, latency, angle = figure.subplots(1, 3)
     for method, (colour, style) in _STYLES.items():
@@ -44,14 +41,10 @@ def draw(table: Sequence[Mapping[str, Any]], path: Path) -> None:
             angle.plot(
                 [row["latency_ms"] for row in rows], weighted, "o:", color=colour, mfc="white", ms=4, lw=1, label="weighted by probability"
             )
-    default = next((row for row in table if row["default"]), None)
-    if default is not None:
-        for axes, x, y in (
-            (window, 1000 * default["samples"] / 1400, default["percent"]),
-            (latency, default["latency_ms"], default["percent"]),
-            (angle, default["latency_ms"], default["angle_deg"]),
-        ):
-            axes.plot(x, y, "o", ms=13, mfc="none", mec="#555555", mew=1.4, label="the default")
+    default = next(row for row in table if row["default"])
+    ring(window, 1000 * default["samples"] / 1400, default["percent"])
+    ring(latency, default["latency_ms"], default["percent"])
+    ring(angle, default["latency_ms"], default["angle_deg"])
     for axes, words in (
         (window, "one window, ms"),
         (latency, "all readings needed and computing, ms"),
@@ -64,4 +57,17 @@ def draw(table: Sequence[Mapping[str, Any]], path: Path) -> None:
     angle.set(ylabel="mean error of the edge's direction, degrees", ylim=(0, None))
     named = {name: mark for axes in figure.axes for mark, name in zip(*axes.get_legend_handles_labels(), strict=True)}
     figure.legend(named.values(), named.keys(), loc="outside lower center", ncols=len(named), fontsize=8)
-    atomic_write(path, png(figure))
+    save(figure, path, default=why(table))
+
+
+def why(table: Sequence[Mapping[str, Any]]) -> str:
+    """What the default is, and why."""
+    own = {row["samples"]: row for row in table if row["method"] == "improved"}
+    default = next(row for row in own.values() if row["default"])
+    beside = ", ".join(f"{own[n]['percent']:.1f} % in {own[n]['latency_ms']:.0f} ms" for n in (min(own), max(own)))
+    theirs = max((row for row in table if row["method"] != "improved"), key=lambda row: row["percent"], default=None)
+    published = f"; as published {theirs['percent']:.1f} % at best, in {theirs['latency_ms']:.0f} ms" if theirs else ""
+    return (
+        f"the improved method on {default['samples']} readings, where the curve bends: {default['percent']:.1f} % in "
+        f"{default['latency_ms']:.0f} ms (the shortest and the longest {beside}){published}"
+    )

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from skinfab.bench.marked import png
+from skinfab.bench.marked import png, ring, save
 from skinfab.bench.optical_contour import FRAMES, IMPROVED, PUBLISHED, patience, ways
 from skinfab.files import atomic_write
 from skinfab.fingertip.optical.follower import Feel
@@ -41,13 +41,25 @@ def draw_rates(table: Sequence[Mapping[str, Any]], path: Path) -> None:
             ends = [[max(row["rate"] - row["low"], 0) for row in rows], [max(row["high"] - row["rate"], 0) for row in rows]]
             axes.errorbar(x, y, yerr=ends, fmt="o-", color=colour, ms=4, lw=1, capsize=2, label=name)
             if name == IMPROVED:
-                axes.plot(x[0], y[0], "o", ms=13, mfc="none", mec="#555555")
+                ring(axes, x[0], y[0])
     left.set(xlabel=f"step, mm (tips' noise {noise:g} mm)", ylabel="part of contours closed round the plate")
     right.set(xlabel=f"tips' noise, mm (steps of {step:g} mm)")
     left.legend(fontsize=8)
     for axes in (left, right):
         axes.grid(True, lw=0.3, alpha=0.6)
-    atomic_write(path, png(figure))
+    save(figure, path, default=why(table))
+
+
+def why(table: Sequence[Mapping[str, Any]]) -> str:
+    """What the default is, and why."""
+    step, noise, seeds = (table[0][key] for key in ("step_mm", "noise_mm", "seeds"))
+    usual = {row["method"]: row for row in table if (row["step_mm"], row["noise_mm"]) == (step, noise)}
+    worst = {name: min(row["right"] for row in table if row["method"] == name) for name in _COLOURS}
+    said = "; ".join(f"{name} {usual[name]['right']} and {worst[name]}" for name in _COLOURS)
+    return (
+        f"{IMPROVED}, in steps of {step:g} mm, the seed's: contours closed of {seeds}, there and at the worst step and noise: {said}; a "
+        f"trace every {step:g} mm is what the shape is made of"
+    )
 
 
 def draw_reconstruction(feel: Feel, path: Path, *, seed: int = 0) -> None:

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from skinfab.bench.marked import png
-from skinfab.files import atomic_write
+from skinfab.bench.marked import ring, save
+from skinfab.bench.segment_words import at_default
 from skinfab.seams.judge import Limits
 
 _COLOURS = {"usual": "#0b6e4f", "fewest": "#2b5c9e"}
@@ -20,12 +20,9 @@ _DPI = 150
 
 def draw(table: Sequence[Mapping[str, Any]], path: Path, *, notes: Sequence[str] = ()) -> None:
     """Write the chart as PNG: thin lines are objects, thick ones their mean; the default is ringed."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(10.4, 8.2), dpi=_DPI)
-    FigureCanvasAgg(figure)
-    figure.subplots_adjust(left=0.075, right=0.985, top=0.93, bottom=0.12, wspace=0.16, hspace=0.2)
+    figure = Figure(figsize=(10.4, 8.2), dpi=_DPI, layout="constrained")
     figure.suptitle("Automatic seams: pieces and length of seam against the bound and against time")
     panels = figure.subplots(2, 2, sharey="row", sharex="col")
     for (by_bound, by_time), what, label in zip(
@@ -45,12 +42,19 @@ def draw(table: Sequence[Mapping[str, Any]], path: Path, *, notes: Sequence[str]
     bounds = sorted({row["bound"] for row in table if row["bound"] is not None})
     panels[1][0].set(xlabel="bound on the mean d", xticks=bounds)
     panels[1][1].set(xscale="log", xlabel=f"processor time, s (ours: bound {Limits.mean:g})")
-    marks = (
-        "thin: one object; thick: mean over the objects that were not refused at any bound · squares: xatlas, which knows no bound\n"
-        f"ring: the default, {_DEFAULT} at {Limits.mean:g}"
+    marks = "thin: one object; thick: mean over the objects that were not refused at any bound · squares: xatlas, which knows no bound"
+    save(figure, path, default=why(table), notes=[marks, *notes])
+
+
+def why(table: Sequence[Mapping[str, Any]]) -> str:
+    """What the default is, and why, by the objects that every method has."""
+    rows = {method: of for method, of in at_default(table).items() if method in _COLOURS}
+    d = {method: f"{min(row['mean_d'] for row in of):.3f} to {max(row['mean_d'] for row in of):.3f}" for method, of in rows.items()}
+    seam = {method: np.mean([row["seam"] for row in of]) for method, of in rows.items()}
+    return (
+        f"{_DEFAULT} at {Limits.mean:g}, which is for printing: simple pieces that keep well within the bound (mean d {d['usual']}); "
+        f"fewest, which uses the bound up ({d['fewest']}), has {seam['usual'] - seam['fewest']:.2f} less of seam"
     )
-    figure.text(0.5, 0.012, "\n".join([marks, *notes]), ha="center", va="bottom", fontsize=8)
-    atomic_write(path, png(figure))
 
 
 def _ticks() -> Any:
@@ -73,7 +77,7 @@ def _against_bound(axes: Any, rows: Sequence[Mapping[str, Any]], method: str, wh
         mean = {b: float(np.mean([line[b] for line in whole])) for b in bounds}
         axes.plot(bounds, [mean[b] for b in bounds], "o-", color=colour, lw=2, ms=5, label=f"{method}, mean")
         if method == _DEFAULT and Limits.mean in mean:
-            axes.plot(Limits.mean, mean[Limits.mean], "o", ms=14, mfc="none", color=colour, mew=1.6)
+            ring(axes, Limits.mean, mean[Limits.mean], color=colour)
 
 
 def _against_time(axes: Any, rows: Sequence[Mapping[str, Any]], method: str, what: str) -> None:
@@ -82,4 +86,5 @@ def _against_time(axes: Any, rows: Sequence[Mapping[str, Any]], method: str, wha
     colour, mark = (_COLOURS[method], "o") if method in _COLOURS else (_PEER, "s")
     axes.plot([row["seconds"] for row in rows], [row[what] for row in rows], mark, color=colour, ms=5, label=method)
     if method == _DEFAULT:
-        axes.plot([row["seconds"] for row in rows], [row[what] for row in rows], "o", ms=11, mfc="none", color=colour, mew=1.2)
+        for row in rows:
+            ring(axes, row["seconds"], row[what], size=11, color=colour)

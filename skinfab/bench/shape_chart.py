@@ -6,22 +6,20 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from skinfab.bench.marked import png
-from skinfab.files import atomic_write
+from skinfab.bench.marked import ring, save
 from skinfab.fingertip.force.shape import CONFIDENCE
 
 _COLOURS = {"published": "#D55E00", "pose-free": "#009E73", "misfits": "#0072B2"}
 _LABELS = {"published": "published: 24 numbers, 24-50-3", "pose-free": "17 pose-free numbers", "misfits": "misfits of three fits"}
+_DEFAULT = "misfits"
 _DPI = 150
 
 
 def draw(table: Sequence[Mapping[str, Any]], sizes: Sequence[Mapping[str, Any]], path: Path) -> None:
     """Write the chart as PNG; the default is ringed."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(13.0, 4.2), dpi=_DPI, layout="constrained")
-    FigureCanvasAgg(figure)
     figure.suptitle("Shapes from four contacts, objects that were not learned from (simulated)", fontsize=10)
     curve, turns, solids = figure.subplots(1, 3)
     free = max(row["yaw_deg"] for row in table)
@@ -32,9 +30,9 @@ def draw(table: Sequence[Mapping[str, Any]], sizes: Sequence[Mapping[str, Any]],
         curve.fill_between(answered, [row["low"] for row in rows], [row["high"] for row in rows], color=colour, alpha=0.12, lw=0)
         all_answered = sorted((row for row in table if row["features"] == name and row["confidence"] == 0), key=lambda row: row["yaw_deg"])
         turns.plot([row["yaw_deg"] for row in all_answered], [row["right"] for row in all_answered], "o-", color=colour, ms=4, lw=1)
-    default = next((r for r in table if (r["features"], r["yaw_deg"], r["confidence"]) == ("misfits", free, CONFIDENCE)), None)
-    if default:
-        curve.plot(default["answered"], default["right"], "o", ms=14, mfc="none", mec="#555555", mew=1.4, label="the default: 0.9")
+    own = {row["confidence"]: row for row in table if row["features"] == _DEFAULT and row["yaw_deg"] == free}
+    ring(curve, own[CONFIDENCE]["answered"], own[CONFIDENCE]["right"])
+    ring(turns, free, own[0]["right"])
     curve.set(xlabel="answered, part of the grasps (confidence from 0 to 0.99)", ylabel="right, part of the answers", ylim=(None, 1.02))
     turns.set(xlabel="objects turned by up to, deg", ylabel="right, all answered", xscale="log", ylim=(0.3, 1.02))
     ticks = sorted({row["yaw_deg"] for row in table})
@@ -48,7 +46,7 @@ def draw(table: Sequence[Mapping[str, Any]], sizes: Sequence[Mapping[str, Any]],
         rows = [row for row in sizes if row["way"] == way]
         place = [j + 0.36 * k - 0.18 for j in range(len(rows))]
         errors = [row["error_median_mm"] for row in rows]
-        solids.bar(place, errors, 0.34, color=colour, label=f"{way}: median, and 90 %")
+        solids.bar(place, errors, 0.34, color=colour, label=f"{way}{', the default' if way == 'fit' else ''}: median, and 90 %")
         solids.vlines(place, errors, [row["error_p90_mm"] for row in rows], color=colour, lw=1)
     paper = [abs(row["paper_mm"] - row["true_mm"]) for row in sizes if row["way"] == "fit"]
     solids.plot(range(len(paper)), paper, "k_", ms=18, label="the paper's one example (real hand)")
@@ -58,4 +56,17 @@ def draw(table: Sequence[Mapping[str, Any]], sizes: Sequence[Mapping[str, Any]],
     solids.set_ylim(0, 1.35 * max(row["error_p90_mm"] for row in sizes))
     solids.legend(fontsize=7, loc="upper left")
     solids.grid(True, axis="y", lw=0.3, alpha=0.6)
-    atomic_write(path, png(figure))
+    save(figure, path, default=why(table))
+
+
+def why(table: Sequence[Mapping[str, Any]]) -> str:
+    """What the default is, and why, by objects at any turn."""
+    free = max(row["yaw_deg"] for row in table)
+    by = {(row["features"], row["confidence"]): row for row in table if row["yaw_deg"] == free}
+    others = ", ".join(f"{_LABELS[name]} {by[name, 0]['right']:.0%}" for name in _COLOURS if name != _DEFAULT)
+    gated, surest = by[_DEFAULT, CONFIDENCE], by[_DEFAULT, max(confidence for _, confidence in by)]
+    return (
+        f"{_LABELS[_DEFAULT]}, answered from a confidence of {CONFIDENCE:g} on: of all grasps {by[_DEFAULT, 0]['right']:.0%} are right "
+        f"({others}), of the {gated['answered']:.0%} answered {gated['right']:.1%}; a confidence of {surest['confidence']:g} answers "
+        f"{surest['answered']:.0%} for {surest['right']:.1%}"
+    )

@@ -1,7 +1,8 @@
 """Length of the spectrum and way to find its peaks against how exact peaks are, and against how often textures are told right.
 
 Two measurements: a corrugation's frequency and magnitude from a noisy sine of known ones, with each way to find the peak; and
-held-out accuracy on simulated slides over the paper's six materials, with the features as published and with bands.
+held-out accuracy on simulated slides over the paper's six materials, with the features as published and with bands. Then the same
+with more or fewer peaks than the published three.
 """
 
 from __future__ import annotations
@@ -16,10 +17,11 @@ from typing import Any
 import numpy as np
 
 from skinfab.bench.flatten import REPEATS, read_csv, write_csv
+from skinfab.bench.texture_peaks import WAYS, Slides, measure_peaks
 from skinfab.bench.timing import one_processor, timed_twice
 from skinfab.fingertip.confusion import grouped_accuracy
 from skinfab.fingertip.force.simulator import texture_logs
-from skinfab.fingertip.force.texture import N_FFT, interpolated_peaks, published_peaks, sliding_part
+from skinfab.fingertip.force.texture import N_FFT, sliding_part
 from skinfab.fingertip.force.texture_model import feature_table, train_texture
 from skinfab.progress import Progress, silent
 
@@ -29,7 +31,6 @@ LENGTHS = (128, 256, 512, 1024)
 SEEDS = (0, 1, 2)
 SPECIMENS, SLIDES = 15, 3
 
-WAYS = {"published": published_peaks, "interpolated": interpolated_peaks}
 #: The features whose peaks, or power, each way stands for.
 FEATURES_OF = {"published": "published", "interpolated": "bands"}
 #: The sine whose peak is looked for: a corrugation between 3 and 8 Hz, its amplitude, and the noise of a force.
@@ -69,12 +70,12 @@ class Row:
 
 
 def run(folder: Path, *, repeats: int = REPEATS, progress: Progress = silent) -> dict[str, Any]:
-    """Measure, and write texture.csv, texture_ablation.csv, texture.png and texture.txt into `folder`, which is there already.
+    """Measure, and write texture.csv, texture_peaks.csv, texture_ablation.csv, texture.png and .txt into `folder`, which is there already.
 
     Returns
     -------
     dict
-        "sentence", "notes" (what to know of the measurement), "rows" and "ablation".
+        "sentence", "notes" (what to know of the measurement), "rows", "peaks" and "ablation".
     """
     from skinfab.bench.texture_ablation import slides_without
     from skinfab.bench.texture_chart import draw
@@ -83,46 +84,47 @@ def run(folder: Path, *, repeats: int = REPEATS, progress: Progress = silent) ->
     notes = [f"simulated: {len(SEEDS)} sets of {SPECIMENS} specimens and {SLIDES} slides of each of the paper's six materials"]
     with one_processor() as alone:
         notes += [] if alone else ["this system cannot keep a process on one processor"]
-        rows = measure(repeats=repeats, progress=lambda done, what: progress(0.6 * done, what))
+        sets = slides_of(progress=lambda done, what: progress(0.3 * done, what))
+        rows = measure(sets, repeats=repeats, progress=lambda done, what: progress(0.3 + 0.3 * done, what))
     write_csv(rows, folder / "texture.csv")
+    write_csv(measure_peaks(sets), folder / "texture_peaks.csv")
     write_csv(slides_without(progress=lambda done, what: progress(0.6 + 0.4 * done, what)), folder / "texture_ablation.csv")
-    table = read_csv(folder / "texture.csv")
+    table, peaks = read_csv(folder / "texture.csv"), read_csv(folder / "texture_peaks.csv")
     said = sentence(table)
     atomic_write(folder / "texture.txt", "\n".join([said, *notes]) + "\n")
-    draw(table, folder / "texture.png")
-    return {"sentence": said, "notes": notes, "rows": table, "ablation": read_csv(folder / "texture_ablation.csv")}
+    draw(table, peaks, folder / "texture.png")
+    return {"sentence": said, "notes": notes, "rows": table, "peaks": peaks, "ablation": read_csv(folder / "texture_ablation.csv")}
 
 
-def measure(
-    *,
-    seeds: Sequence[int] = SEEDS,
-    specimens: int = SPECIMENS,
-    slides: int = SLIDES,
-    lengths: Sequence[int] = LENGTHS,
-    repeats: int = REPEATS,
-    progress: Progress = silent,
-) -> list[Row]:
-    """A row for every way and length."""
+def slides_of(
+    *, seeds: Sequence[int] = SEEDS, specimens: int = SPECIMENS, slides: int = SLIDES, progress: Progress = silent
+) -> list[Slides]:
+    """A set of slides for each seed."""
     sets = []
     for k, seed in enumerate(seeds):
-        progress(0.5 * k / len(seeds), f"slides, set {k + 1} of {len(seeds)}")
+        progress(k / len(seeds), f"slides, set {k + 1} of {len(seeds)}")
         logs = texture_logs(specimens=specimens, slides=slides, seed=seed)
-        sets.append(([sliding_part(each) for each in logs], [each.label for each in logs], [each.group for each in logs]))
+        sets.append(Slides([sliding_part(each) for each in logs], [each.label for each in logs], [each.group for each in logs]))
+    return sets
+
+
+def measure(sets: Sequence[Slides], *, lengths: Sequence[int] = LENGTHS, repeats: int = REPEATS, progress: Progress = silent) -> list[Row]:
+    """A row for every way and length."""
     rows = []
     for j, way in enumerate(WAYS):
         for k, n_fft in enumerate(lengths):
-            progress(0.5 + 0.5 * (j + k / len(lengths)) / len(WAYS), f"{way}, {n_fft} samples")
+            progress((j + k / len(lengths)) / len(WAYS), f"{way}, {n_fft} samples")
             frequency, magnitude = peak_errors(way, n_fft)
             right: list[bool] = []
             specimen_of: list[tuple[int, str]] = []
-            for i, (parts, labels, groups) in enumerate(sets):
-                said = train_texture(parts, labels, groups, features=FEATURES_OF[way], n_fft=n_fft).said
-                right += [a == b for a, b in zip(said, labels, strict=True)]
-                specimen_of += [(i, group) for group in groups]
+            for i, each in enumerate(sets):
+                said = train_texture(each.parts, each.labels, each.groups, features=FEATURES_OF[way], n_fft=n_fft).said
+                right += [a == b for a, b in zip(said, each.labels, strict=True)]
+                specimen_of += [(i, group) for group in each.groups]
             rate = grouped_accuracy(np.array(right), specimen_of)
-            work = partial(feature_table, sets[0][0], FEATURES_OF[way], n_fft=n_fft)
+            work = partial(feature_table, sets[0].parts, FEATURES_OF[way], n_fft=n_fft)
             times = [timed_twice(work)[1] for _ in range(repeats)]
-            each_us = 1e6 * min(times) / len(sets[0][0])
+            each_us = 1e6 * min(times) / len(sets[0].parts)
             rows.append(Row(way, n_fft, n_fft / _RATE_HZ, frequency, magnitude, rate.value, rate.low, rate.high, each_us))
     return rows
 

@@ -90,6 +90,28 @@ def sentence(table: Table, refinement: Table) -> str:
     return "; ".join(parts) + "."
 
 
+def why_isometric(table: Table) -> str:
+    """What the default of flattening is, and why, by the largest size."""
+    size = max(row["triangles"] for row in table)
+    usable = [row for row in table if row["triangles"] == size and row["usable"]]
+    default = next(row for row in table if row["triangles"] == size and row["method"] == DEFAULT)
+    least = min(row["mean_d"] for row in usable)
+    return (
+        f"{DEFAULT}: at {size} triangles its mean d is {default['mean_d']:.5f}, the least of all usable results {least:.5f}, "
+        + _beside_the_quicker(usable, default)
+    )
+
+
+def why_newton(refinement: Table) -> str:
+    """What the default of refinement is, and why, by the largest size."""
+    size = max(row["triangles"] for row in refinement)
+    newton_s, slim_s, there = reached(refinement, size)
+    return (
+        f"{NEWTON}, which ends there by itself: at {size} triangles it is within {SAME_D - 1:.1%} of the least d - 4 after "
+        f"{newton_s / slim_s:.2f} of SLIM's time" + ("" if there else " at most, as SLIM did not get there")
+    )
+
+
 def _beside_the_quicker(usable: Table, default: Mapping[str, Any]) -> str:
     quicker = [row for row in usable if row["seconds"] < default["seconds"]]
     if not quicker:

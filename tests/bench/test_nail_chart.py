@@ -19,7 +19,8 @@ def drawn(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     """The figures that are drawn."""
     figures: list[Any] = []
     for module in (nail_chart, nail_window_chart):
-        monkeypatch.setattr(module, "png", lambda figure: figures.append(figure) or b"")
+        monkeypatch.setattr(module, "png", lambda figure: figures.append(figure) or b"", raising=False)
+    monkeypatch.setattr("skinfab.bench.marked.png", lambda figure, description: figures.append(figure) or b"")
     return figures
 
 

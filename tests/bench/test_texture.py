@@ -2,11 +2,14 @@
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
-from skinfab.bench.texture import measure, peak_errors, sentence
+from skinfab.bench.texture import measure, peak_errors, sentence, slides_of
 from skinfab.bench.texture_ablation import TERMS, slides_without
 from skinfab.bench.texture_chart import draw
+from skinfab.bench.texture_peaks import BANDS, measure_peaks, with_peaks
+from skinfab.fingertip.force.texture_model import feature_table
 
 
 def test_interpolation_beats_the_grid_at_every_length() -> None:
@@ -18,13 +21,22 @@ def test_interpolation_beats_the_grid_at_every_length() -> None:
 
 
 def test_a_small_table_its_chart_and_its_sentence(tmp_path: Path) -> None:
-    rows = [vars(row) for row in measure(seeds=(0,), specimens=3, slides=2, lengths=(256, 512), repeats=1)]
+    sets = slides_of(seeds=(0,), specimens=3, slides=2)
+    rows = [vars(row) for row in measure(sets, lengths=(256, 512), repeats=1)]
     assert {(row["way"], row["n_fft"]) for row in rows} == {(w, n) for w in ("published", "interpolated") for n in (256, 512)}
     assert all(0 <= row["low"] <= row["accuracy"] <= row["high"] <= 1 for row in rows)
     said = sentence(rows)
     ours = next(row for row in rows if row["way"] == "interpolated" and row["n_fft"] == 512)
     assert said.startswith("Texture, simulated: from 512 samples") and f"{100 * ours['accuracy']:.1f} % of the slides" in said
-    draw(rows, tmp_path / "a.png")
+    peaks = [vars(row) for row in measure_peaks(sets, counts=(1, 3))]
+    assert [(row["way"], row["peaks"], row["features"]) for row in peaks] == [
+        *((way, n, 2 * n + 3) for way in ("published", "interpolated") for n in (1, 3)),
+        (BANDS, 0, 18),
+    ]
+    np.testing.assert_array_equal(with_peaks(sets[0], "published", 3), feature_table(sets[0].parts, "published"))
+    # One in six would be right by chance, and all where the classifier had seen the specimens that it is asked about.
+    assert all(0.4 < row["low"] <= row["accuracy"] <= row["high"] < 1 for row in peaks)
+    draw(rows, peaks, tmp_path / "a.png")
     assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
 
 
