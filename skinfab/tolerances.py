@@ -45,6 +45,9 @@ MOLLIFY = 1e-9
 #: Newton on d stops when the next step promises less than this fraction of what is left above 4.
 NEWTON_DECREASE = 1e-4
 
+#: While seams are searched it need not be driven so far: d is known to 1 % of what is above 4.
+SEARCH_DECREASE = 1e-2
+
 #: Added to the Newton system's diagonal, as a fraction of its mean, so that rigid motions are fixed.
 NEWTON_RIDGE = 1e-9
 

@@ -28,6 +28,7 @@ from skinfab.seams.refine import Judged, refine_seams
 from skinfab.seams.rules import EdgeRules, coarse_rules
 from skinfab.seams.simplest import simplest_seams
 from skinfab.seams.weights import seam_weights
+from skinfab.tolerances import SEARCH_DECREASE
 
 BoolArray = NDArray[np.bool_]
 
@@ -39,9 +40,6 @@ _COARSE_FACES = 6000
 
 #: The search aims below the bound by this part of what it allows above 4, because the fine mesh shows more.
 _AIM = 0.7
-
-#: In the search a flattening need not be driven to the end: d is known to 1 % of what is above 4.
-_SEARCH_DECREASE = 1e-2
 
 #: Gluing may cost this part of what the bound allows above 4.
 _GLUE_EXCESS = 0.1
@@ -170,13 +168,13 @@ def _usual(mesh: Mesh, limits: Limits, neck: float, rules: EdgeRules | None, rep
     cut = _on_fine(mesh, small, seams.cut, rules, locked)
     weight, forbidden = (seam_weights(mesh), None) if rules is None else (rules.weights(mesh), rules.forbidden)
     cut, pieces = refine_seams(
-        mesh, cut, limits, weight, forbidden=forbidden, progress=lambda done: report(0.5 + 0.4 * done), tolerance=_SEARCH_DECREASE
+        mesh, cut, limits, weight, forbidden=forbidden, progress=lambda done: report(0.5 + 0.4 * done), tolerance=SEARCH_DECREASE
     )
     pieces = carried_parted(small, seams.pieces, mesh, pieces)
     stay = None if rules is None else rules.locked
     return Seams(
         *glue_pieces(
-            mesh, cut, pieces, limits, neck=neck, excess=np.inf, smaller_than=_SMALL * mesh.area, locked=stay, tolerance=_SEARCH_DECREASE
+            mesh, cut, pieces, limits, neck=neck, excess=np.inf, smaller_than=_SMALL * mesh.area, locked=stay, tolerance=SEARCH_DECREASE
         )
     )
 
@@ -209,9 +207,9 @@ def _search(mesh: Mesh, aim: Limits, limits: Limits, neck: float, rules: EdgeRul
         def report(done: float, begun: float = begun) -> None:
             progress(begun + 0.8 * done / len(starts))
 
-        cut, pieces = refine_seams(mesh, start, aim, weight, tolerance=_SEARCH_DECREASE, forbidden=forbidden, progress=report)
+        cut, pieces = refine_seams(mesh, start, aim, weight, tolerance=SEARCH_DECREASE, forbidden=forbidden, progress=report)
         excess = _GLUE_EXCESS * (limits.mean - 4)
-        found.append(Seams(*glue_pieces(mesh, cut, pieces, aim, neck=neck, excess=excess, tolerance=_SEARCH_DECREASE, locked=locked)))
+        found.append(Seams(*glue_pieces(mesh, cut, pieces, aim, neck=neck, excess=excess, tolerance=SEARCH_DECREASE, locked=locked)))
         progress((k + 1) / len(starts))
         if len(found[-1].pieces) > _MANY:
             break

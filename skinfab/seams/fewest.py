@@ -27,6 +27,7 @@ from skinfab.seams.rules import EdgeRules, coarse_rules
 from skinfab.seams.sheet import Sheet, Surface, lay_apart, lay_out, sheet_of
 from skinfab.seams.straighten import straightened
 from skinfab.seams.weights import seam_weights
+from skinfab.tolerances import SEARCH_DECREASE
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -61,9 +62,6 @@ _ROUNDS = 8
 
 #: ... and once more on a finer mesh, where keeping it from covering itself took more seam.
 _LAST_ROUNDS = 3
-
-#: In the search a flattening need not be driven to the end: d is known to 1 % of what is above 4.
-_SEARCH_DECREASE = 1e-2
 
 
 @dataclass(frozen=True, eq=False)
@@ -159,12 +157,12 @@ def fewest_seams(
             _carried(middle, cut, fine),
             limits,
             fine.weight,
-            tolerance=_SEARCH_DECREASE,
+            tolerance=SEARCH_DECREASE,
             forbidden=forbidden,
             progress=lambda done: report(0.8 + 0.2 * done),
         )
     locked = None if rules is None else rules.locked
-    return glue_pieces(mesh, cut, pieces, limits, neck=neck, excess=np.inf, tolerance=_SEARCH_DECREASE, locked=locked)
+    return glue_pieces(mesh, cut, pieces, limits, neck=neck, excess=np.inf, tolerance=SEARCH_DECREASE, locked=locked)
 
 
 def _level(mesh: Mesh, here: Mesh, rules: EdgeRules | None) -> _Level:

@@ -23,6 +23,7 @@ from skinfab.seams.judge import Limits
 from skinfab.seams.refine import Judged, refine_seams
 from skinfab.seams.rules import EdgeRules, coarse_rules
 from skinfab.seams.weights import seam_weights
+from skinfab.tolerances import SEARCH_DECREASE
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -39,9 +40,6 @@ _TURNS = 12
 
 #: A fine mesh shows more d than the one on which regions were joined.
 _AIM = 0.7
-
-#: In the search a flattening need not be driven to the end: d is known to 1 % of what is above 4.
-_SEARCH_DECREASE = 1e-2
 
 
 def simplest_seams(
@@ -87,7 +85,7 @@ def simplest_seams(
     never = None if marked is None else marked.forbidden
     if never is not None:
         cut &= ~never
-    search = partial(refine_seams, small, cut, weight=weight, tolerance=_SEARCH_DECREASE, forbidden=never)
+    search = partial(refine_seams, small, cut, weight=weight, tolerance=SEARCH_DECREASE, forbidden=never)
     try:
         cut, pieces = search(inner, progress=lambda done: report(0.4 * done))
     except RefusedError:
@@ -98,7 +96,7 @@ def simplest_seams(
         cut, pieces = search(limits)
     cost = None if marked is None else small.edge_lengths * marked.factor
     cut, pieces = glue_pieces(
-        small, cut, pieces, inner, neck=neck, excess=np.inf, tolerance=_SEARCH_DECREASE, locked=there, whole=True, cost=cost
+        small, cut, pieces, inner, neck=neck, excess=np.inf, tolerance=SEARCH_DECREASE, locked=there, whole=True, cost=cost
     )
     report(0.7)
     if small is not mesh:
@@ -106,7 +104,7 @@ def simplest_seams(
         costs = seam_weights(mesh) if rules is None else rules.weights(mesh)
         cut = without_scraps(mesh, (transfer(small, cut & ~there, mesh, weight=costs, pinned=ends) & ~forbidden) | locked) | locked
         cut, pieces = refine_seams(
-            mesh, cut, limits, costs, tolerance=_SEARCH_DECREASE, forbidden=forbidden, progress=lambda done: report(0.7 + 0.3 * done)
+            mesh, cut, limits, costs, tolerance=SEARCH_DECREASE, forbidden=forbidden, progress=lambda done: report(0.7 + 0.3 * done)
         )
     return cut, pieces
 
