@@ -13,37 +13,19 @@ from __future__ import annotations
 import argparse
 import csv
 import os
-import subprocess
 import sys
 import time
 import tkinter as tk
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from gui_orbit import screen
 
 ROOT = Path(__file__).resolve().parent.parent
 EVENTS = 400
 SENSORS = 10
 SIZE = "900x700"
-
-
-@contextmanager
-def screen() -> Iterator[None]:
-    """A screen of its own, so that nothing else is drawn on it."""
-    read, write = os.pipe()
-    command = ["Xvfb", "-displayfd", str(write), "-screen", "0", "1280x800x24", "-nolisten", "tcp"]
-    server = subprocess.Popen(command, pass_fds=[write], stderr=subprocess.DEVNULL)
-    os.close(write)
-    with os.fdopen(read) as pipe:
-        os.environ["DISPLAY"] = f":{pipe.readline().strip()}"
-    try:
-        yield
-    finally:
-        server.terminate()
-        server.wait(timeout=10)
 
 
 def document(mesh: Path):

@@ -7,13 +7,11 @@ import itertools
 import numpy as np
 from numpy.typing import NDArray
 
+from skinfab.bench.disks import LEAST, MOST, bumped
 from skinfab.errors import InputError
 
-#: Fewer triangles do not carry the bumps; more do not fit most memories.
-LEAST, MOST = 150, 4_000_000
-
-_RADIUS = 30.0  # mm
-_BUMP = 0.08  # of the radius
+#: Of the ball, mm, and its bumps as a part of that.
+_RADIUS, _BUMP = 30.0, 0.08
 
 
 def bumpy_ball(triangles: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
@@ -52,6 +50,4 @@ def bumpy_ball(triangles: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     # Steps of the same angle along the octahedron's edges, so that no part of the ball has much larger triangles than another.
     towards = np.sin(lattice / k * (np.pi / 2))
     towards /= np.linalg.norm(towards, axis=1, keepdims=True)
-    x, y, z = towards.T
-    bumps = np.sin(5 * x + 1) * np.cos(4 * y) + 0.5 * np.sin(9 * y + 2 * x) * z
-    return _RADIUS * (1 + _BUMP * bumps)[:, None] * towards, F.reshape(-1, 3).astype(np.int64)
+    return bumped(towards, _RADIUS, _BUMP), F.reshape(-1, 3).astype(np.int64)

@@ -10,10 +10,10 @@ from skinfab.errors import InputError
 #: Fewer triangles do not carry the bumps; more do not fit most memories.
 LEAST, MOST = 150, 4_000_000
 
-_RADIUS = 50.0  # mm
+#: Of the cap, mm, and its bumps as a part of that.
+_RADIUS, _BUMP = 50.0, 0.06
 #: Degrees from the pole to the rim, mean and its two waves: were the rim round, maps onto a circle would look good here.
 _OPENING, _OVAL, _LOBES = 62, 14, 7
-_BUMP = 0.06  # of the radius
 
 
 def bumpy_cap(triangles: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
@@ -46,12 +46,17 @@ def bumpy_cap(triangles: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     angle = np.arctan2(r * np.sqrt(3) / 2, q + r / 2)[inside]
     polar = np.radians(_OPENING + _OVAL * np.cos(2 * angle) + _LOBES * np.sin(3 * angle)) * ring[inside] / rings
     towards = np.stack([np.sin(polar) * np.cos(angle), np.sin(polar) * np.sin(angle), np.cos(polar)], axis=1)
-    x, y, z = towards.T
-    bumps = np.sin(5 * x + 1) * np.cos(4 * y) + 0.5 * np.sin(9 * y + 2 * x) * z
-    V = _RADIUS * (1 + _BUMP * bumps)[:, None] * towards
+    V = bumped(towards, _RADIUS, _BUMP)
 
     number = np.full((len(axis) + 1, len(axis) + 1), -1, dtype=np.int64)
     number[q[inside] + rings, r[inside] + rings] = np.arange(len(V))
     here, east, north, corner = number[:-1, :-1], number[1:, :-1], number[:-1, 1:], number[1:, 1:]
     F = np.concatenate([np.stack([a.ravel() for a in three], axis=1) for three in ((here, east, north), (east, corner, north))])
     return V, np.ascontiguousarray(F[(F >= 0).all(axis=1)])
+
+
+def bumped(towards: NDArray[np.float64], radius: float, height: float) -> NDArray[np.float64]:
+    """Points (n, 3) mm of a sphere of that radius, with bumps that are `height` of it high, seen from its middle along unit vectors."""
+    x, y, z = towards.T
+    bumps = np.sin(5 * x + 1) * np.cos(4 * y) + 0.5 * np.sin(9 * y + 2 * x) * z
+    return radius * (1 + height * bumps)[:, None] * towards
