@@ -45,10 +45,10 @@ def draw(table: Sequence[Mapping[str, Any]], path: Path) -> None:
     loss.axhline(SIMPLIFY_EFFECT, color="#777777", lw=1, ls="--", label=f"{SIMPLIFY_EFFECT:g}: more is not carried")
     loss.set_ylabel("mean d above that of all triangles")
     time.set_ylabel("time, s")
-    for axes in (loss, time):
+    for axes, corner in ((loss, "upper right"), (time, "upper left")):
         axes.set(xscale="log", yscale="log", xlabel="triangles solved for")
         axes.grid(True, which="both", lw=0.3, alpha=0.6)
-        axes.legend(fontsize=8)
+        axes.legend(fontsize=8, loc=corner)
     time.yaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
     time.yaxis.set_major_formatter("{x:g}")
     time.yaxis.set_minor_formatter(NullFormatter())
@@ -63,8 +63,9 @@ def why(table: Sequence[Mapping[str, Any]]) -> str:
     """What the default is, and why, by the largest size."""
     size = max(row["triangles"] for row in table)
     seconds = {row["share"]: row["seconds"] for row in table if row["triangles"] == size}
-    less, least = min(share for share in seconds if share > 1), min(seconds[share] for share in seconds if share > SHARE)
+    less = min(share for share in seconds if share > 1)
+    fewer = min(seconds[share] for share in seconds if share > SHARE)
     return (
         f"one in {SHARE}, where the time stops falling: {seconds[SHARE] / seconds[1]:.2f} of that of all {size} triangles; one in {less} "
-        f"takes {seconds[less] / seconds[1]:.2f}, and fewer {least / seconds[1]:.2f} at best"
+        f"takes {seconds[less] / seconds[1]:.2f}, and fewer {fewer / seconds[1]:.2f} at best"
     )

@@ -5,9 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from skinfab.bench.disks import bumpy_cap
+from skinfab.bench.disks import LEAST, bumpy_cap
 from skinfab.bench.flatten import read_csv
 from skinfab.bench.simplify import SHARES, measure_shares, run, sentence
+from skinfab.bench.simplify_chart import draw, why
 from skinfab.flatten.disk import flatten_isometric
 from skinfab.flatten.distortion import measure
 from skinfab.flatten.simplified import SHARE
@@ -72,3 +73,9 @@ def test_the_sentence_says_what_the_table_holds() -> None:
     assert (
         sentence([row(1, 2.0, 4.02)]) == f"At 6000 triangles one in {SHARE} is too few to be carried: all of them are solved for, in 2 s."
     )
+
+
+def test_the_smallest_disk_there_is_has_a_chart_too(tmp_path: Path) -> None:
+    table = [vars(row) for row in measure_shares([bumpy_cap(LEAST)], repeats=1)]
+    draw(table, tmp_path / "a.png")
+    assert why(table).startswith("one in 16, where the time stops falling: ")
