@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import codecs
+import csv
 from pathlib import Path
 
 from skinfab.errors import InputError
@@ -42,6 +43,32 @@ def read_csv_lines(path: str | Path, *, max_bytes: int, wanted: str) -> tuple[li
     return lines, max(",;\t", key=head.count)
 
 
+def read_csv_rows(path: str | Path, *, max_bytes: int, wanted: str) -> list[dict[str, str]]:
+    """Rows of a CSV file by its headings, read as `read_csv_lines` does; remarks and empty lines are left out.
+
+    A row that is too short has empty cells.
+
+    Raises
+    ------
+    InputError
+        As `read_csv_lines`, or a cell is out of all proportion.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> path = Path(tempfile.mkdtemp()) / "a.csv"
+    >>> _ = path.write_text("# by hand\\nlog;label\\na.csv;felt\\nb.csv\\n")
+    >>> read_csv_rows(path, max_bytes=1000, wanted="a table")
+    [{'log': 'a.csv', 'label': 'felt'}, {'log': 'b.csv', 'label': ''}]
+    """
+    lines, delimiter = read_csv_lines(path, max_bytes=max_bytes, wanted=wanted)
+    told = (line for line in lines if line.strip() and not line.startswith("#"))
+    try:
+        return list(csv.DictReader(told, restkey="", restval="", delimiter=delimiter))
+    except csv.Error as fault:
+        raise InputError(f"{path} is no table ({fault}); give {wanted}") from fault
+
+
 def _decoded(data: bytes, path: Path, wanted: str) -> str:
     if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
         encodings = ["utf-16"]
@@ -51,7 +78,9 @@ def _decoded(data: bytes, path: Path, wanted: str) -> str:
         encodings = ["utf-8-sig", "cp1252"]
     for encoding in encodings:
         try:
-            return data.decode(encoding)
+            text = data.decode(encoding)
         except UnicodeDecodeError:
             continue
+        if "\0" not in text:  # no file can be called by it
+            return text
     raise InputError(f"{path} is not a text file; give {wanted}")

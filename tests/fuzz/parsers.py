@@ -30,6 +30,12 @@ from gcode.words import read_text
 from skinfab.batch.plan import read_plan
 from skinfab.document import load_skin
 from skinfab.errors import InputError, RefusedError
+from skinfab.fingertip.force.labels import with_labels
+from skinfab.fingertip.force.motion_file import read_events
+from skinfab.fingertip.force.touch_model import read_places
+from skinfab.fingertip.nail.labels import read_labels
+from skinfab.fingertip.optical.picture import read_picture
+from skinfab.fingertip.optical.targets import read_targets
 from skinfab.fingertip.saved import load_model
 from skinfab.material import load_material
 from skinfab.mesh.door import load_usable
@@ -198,6 +204,36 @@ def _calibration(path: Path) -> None:
     assert math.isfinite(load_calibration(path).u0)
 
 
+def _targets(path: Path) -> None:
+    for name in ("one", "two"):
+        (path.parent / f"{name}.png").write_bytes(seeds.picture(name))
+    read = read_targets(path)
+    assert len(read.names) == len(read.images) == len(read.edges) == len(read.groups) > 0
+    assert all(math.isfinite(edge.offset_mm) and math.isfinite(edge.angle_rad) for edge in read.edges)
+
+
+def _picture(path: Path) -> None:
+    image, _ = read_picture(path)
+    assert image.dtype == np.uint8 and image.ndim == 2 and image.size
+
+
+def _nail_labels(path: Path) -> None:
+    labels, _ = read_labels(path)
+    assert labels and all(0 <= each.start_s < each.end_s for each in labels)
+
+
+def _events(path: Path) -> None:
+    assert all(each.start <= each.end for several in read_events(path).values() for each in several)
+
+
+def _places(path: Path) -> None:
+    assert all(np.isfinite(place).all() and place.shape == (3,) for place in read_places(path).values())
+
+
+def _force_labels(path: Path) -> None:
+    assert with_labels([], path) == []
+
+
 _LOGS = {name: Parser(_log, partial(seeds.logs, f"a.{name}"), f".{name}") for name in ("mcap", "bag")}
 
 #: All of them, by name.
@@ -221,5 +257,11 @@ PARSERS: dict[str, Parser] = {
     "db3": Parser(_log, partial(seeds.logs, "bag"), ".db3"),
     "vicon": Parser(_markers, seeds.captures, ".csv"),
     "c3d": Parser(_c3d, seeds.c3d, ".c3d"),
+    "targets": Parser(_targets, seeds.targets, ".csv"),
+    "picture": Parser(_picture, seeds.pictures, ".png"),
+    "nail-labels": Parser(_nail_labels, seeds.nail_labels, ".csv"),
+    "events": Parser(_events, seeds.events, ".csv"),
+    "places": Parser(_places, seeds.places, ".csv"),
+    "force-labels": Parser(_force_labels, seeds.force_labels, ".csv"),
     "calibration": Parser(_calibration, seeds.calibrations, ".json"),
 }

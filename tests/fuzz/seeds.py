@@ -203,3 +203,44 @@ def materials() -> list[bytes]:
 
 def cuts() -> list[bytes]:
     return [b"12 87 14 # one\n3, 4, 5\n"]
+
+
+def pictures() -> list[bytes]:
+    import cv2
+
+    grey = np.arange(48, dtype=np.uint8).reshape(6, 8)
+    return [cv2.imencode(kind, grey)[1].tobytes() for kind in (".png", ".jpg", ".bmp", ".tif", ".pgm")]
+
+
+def picture(name: str) -> bytes:
+    """Two that are not alike."""
+    return pictures()[["one", "two"].index(name)]
+
+
+def targets() -> list[bytes]:
+    return [
+        b"image,offset_mm,angle_deg,depth_mm,group\none.png,1.5,30,.5,a\ntwo.png,-2,-45,1,b\n",
+        b"sep=;\nimage;offset_mm;angle_deg\none.png;1,5;30\n",
+    ]
+
+
+def nail_labels() -> list[bytes]:
+    from skinfab.fingertip.nail.labels import Label, write_labels
+
+    with tempfile.TemporaryDirectory() as folder:
+        write_labels(
+            path := Path(folder, "a.csv"), [Label("a.csv", 0.5, 2.0, "edge", x_mm=1.5), Label("b.csv", 0, 1, "none")], simulated=True
+        )
+        return [path.read_bytes(), b"log;start_s;label;end_s\na.csv;0,5;edge;\n"]
+
+
+def events() -> list[bytes]:
+    return [b"log,kind,start_s,end_s,told_s,simulated\na.csv,rolling,1.000,2.000,1.100,1\nb.csv,separation,0,1,,0\n"]
+
+
+def places() -> list[bytes]:
+    return [b"log,x_mm,y_mm,z_mm\na.csv,1,2.5,-3\nb.csv,0,0,1e1\n"]
+
+
+def force_labels() -> list[bytes]:
+    return [b'# by hand\nlog;label;group\na.csv;felt;1\nb.csv;"wool; raw";2\n']

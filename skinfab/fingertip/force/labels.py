@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
 from skinfab.errors import InputError
 from skinfab.fingertip.force.logs import WrenchLog
-from skinfab.spreadsheet import read_csv_lines
+from skinfab.spreadsheet import read_csv_rows
 
 HEAD = ("log", "label", "group")
 _MAX_BYTES = 10_000_000
@@ -24,8 +23,7 @@ def with_labels(logs: Sequence[WrenchLog], path: str | Path) -> list[WrenchLog]:
         The file cannot be read, lacks a heading, or has no row for a log; or two for one.
     """
     path = Path(path)
-    lines, delimiter = read_csv_lines(path, max_bytes=_MAX_BYTES, wanted="a table of log,label,group as a CSV file")
-    rows = list(csv.DictReader((line for line in lines if not line.startswith("#")), delimiter=delimiter))
+    rows = read_csv_rows(path, max_bytes=_MAX_BYTES, wanted="a table of log,label,group as a CSV file")
     if not rows or any(name not in rows[0] for name in HEAD):
         raise InputError(f"{path} is no table of labels; give it the headings {','.join(HEAD)} and a row a log")
     said: dict[str, tuple[str, str]] = {}

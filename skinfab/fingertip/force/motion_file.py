@@ -10,7 +10,7 @@ from pathlib import Path
 
 from skinfab.errors import InputError
 from skinfab.fingertip.force.motion import KINDS, Motion
-from skinfab.spreadsheet import read_csv_lines
+from skinfab.spreadsheet import read_csv_rows
 
 HEAD = ("log", "kind", "start_s", "end_s", "told_s", "simulated")
 _MAX_BYTES = 50_000_000
@@ -44,8 +44,7 @@ def read_events(path: str | Path) -> dict[str, list[Motion]]:
         It cannot be read, lacks a heading, or has a row that is no event; which one is said.
     """
     path = Path(path)
-    lines, delimiter = read_csv_lines(path, max_bytes=_MAX_BYTES, wanted="a table of events as a CSV file")
-    rows = list(csv.DictReader((line for line in lines if not line.startswith("#")), delimiter=delimiter))
+    rows = read_csv_rows(path, max_bytes=_MAX_BYTES, wanted="a table of events as a CSV file")
     if rows and any(name not in rows[0] for name in HEAD[:4]):
         raise InputError(f"{path} is no table of events; give it the headings {','.join(HEAD[:4])} and a row an event")
     out: dict[str, list[Motion]] = {}

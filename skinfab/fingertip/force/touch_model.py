@@ -9,7 +9,6 @@ cannot tell, above all the forces' common scale, stays as the maker calibrated i
 
 from __future__ import annotations
 
-import csv
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -26,7 +25,7 @@ from skinfab.fingertip.force.tare import tared
 from skinfab.fingertip.force.touch_fit import Touch, fit_matrix, found_at, held_out, touch_of, touches_apart
 from skinfab.fingertip.force.wrench import SensorNoise
 from skinfab.fingertip.saved import load_model, save_model
-from skinfab.spreadsheet import read_csv_lines
+from skinfab.spreadsheet import read_csv_rows
 
 if TYPE_CHECKING:
     from skinfab.fingertip.force.contact_mesh import TipMesh
@@ -260,8 +259,7 @@ def read_places(path: str | Path) -> dict[str, FloatArray]:
         It cannot be read, lacks a heading, names a log twice, or a place is no number.
     """
     path = Path(path)
-    lines, delimiter = read_csv_lines(path, max_bytes=_MAX_BYTES, wanted=f"a table of {','.join(HEAD)} as a CSV file")
-    rows = list(csv.DictReader((line for line in lines if not line.startswith("#")), delimiter=delimiter))
+    rows = read_csv_rows(path, max_bytes=_MAX_BYTES, wanted=f"a table of {','.join(HEAD)} as a CSV file")
     if not rows or any(name not in rows[0] for name in HEAD):
         raise InputError(f"{path} is no table of places; give it the headings {','.join(HEAD)} and a row a log")
     out: dict[str, FloatArray] = {}

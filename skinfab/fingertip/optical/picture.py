@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import io
 import os
+import struct
 import threading
+import warnings
+import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -19,6 +23,10 @@ from skinfab.fingertip.optical.pins import Image
 SUFFIXES = (".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".pgm")
 #: What a simulator writes into its pictures, near their beginning.
 _SIMULATED, _HEAD = b"simulated: true", 4096
+#: More is no picture of a sensor's camera: a few hundred bytes can claim a thousand million pixels. Three bytes of colour each.
+MOST_PIXELS = 50_000_000
+MAX_BYTES = 4 * MOST_PIXELS
+_PNG = b"\x89PNG\r\n\x1a\n"
 
 
 @dataclass
@@ -58,7 +66,7 @@ def read_picture(path: str | Path) -> tuple[Image, bool]:
     Raises
     ------
     InputError
-        There is no such file, or it is no picture.
+        There is no such file, or it is no picture, or larger than any camera's.
 
     Examples
     --------
@@ -71,12 +79,15 @@ def read_picture(path: str | Path) -> tuple[Image, bool]:
     """
     path = Path(path)
     try:
-        data = path.read_bytes()
-    except OSError as fault:
-        raise InputError(f"{path}: {fault.strerror or fault}; give a picture that can be read") from fault
+        with path.open("rb") as file:
+            data = file.read(MAX_BYTES + 1)
+    except (OSError, ValueError) as fault:  # ValueError: a null byte in its name
+        raise InputError(f"{path}: {getattr(fault, 'strerror', None) or fault}; give a picture that can be read") from fault
+    if len(data) > MAX_BYTES or _pixels(data) > MOST_PIXELS:
+        raise InputError(f"{path} is a picture of more than {MOST_PIXELS // 10**6} million pixels; give those of the sensor's camera")
     try:
         with opencv_silent():
-            image = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_GRAYSCALE) if data and not _cut_off(data) else None
+            image = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_GRAYSCALE) if data and not _damaged(data) else None
     except cv2.error:
         image = None
     if image is None:
@@ -84,6 +95,37 @@ def read_picture(path: str | Path) -> tuple[Image, bool]:
     return image.astype(np.uint8, copy=False), _SIMULATED in data[:_HEAD]
 
 
-def _cut_off(data: bytes) -> bool:
-    """Is it a PNG without its end? libpng would print a line of its own on that, past everything that is set here."""
-    return data.startswith(b"\x89PNG") and b"IEND" not in data[-1024:]
+def _damaged(data: bytes) -> bool:
+    """Is it a PNG whose chunks are not whole?
+
+    libpng would print a line of its own on that, past everything that is set here, and OpenCV take 4 GB because a
+    chunk's length says so.
+    """
+    if not data.startswith(_PNG):
+        return False
+    at = len(_PNG)
+    while at + 12 <= len(data):
+        length, kind = struct.unpack_from(">I4s", data, at)
+        end = at + 8 + length
+        if end + 4 > len(data) or zlib.crc32(data[at + 4 : end]) != int.from_bytes(data[end : end + 4], "big"):
+            return True
+        if kind == b"IEND":
+            return False
+        at = end + 4
+    return True
+
+
+def _pixels(data: bytes) -> int:
+    """How many pixels a picture claims to have; 0 where its heading is not understood here: OpenCV itself stops at 2^30."""
+    from PIL import Image as Headings
+
+    with _HUSH.lock, warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        warnings.simplefilter("error", Headings.DecompressionBombWarning)
+        try:
+            with Headings.open(io.BytesIO(data)) as heading:
+                return int(heading.width * heading.height)
+        except (Headings.DecompressionBombWarning, Headings.DecompressionBombError):
+            return MOST_PIXELS + 1
+        except (OSError, ValueError, OverflowError):
+            return 0

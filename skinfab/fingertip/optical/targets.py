@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import math
 import re
 from dataclasses import dataclass, replace
@@ -14,7 +13,7 @@ from skinfab.errors import InputError
 from skinfab.fingertip.optical.edge import Edge
 from skinfab.fingertip.optical.picture import read_picture
 from skinfab.fingertip.optical.pins import Image
-from skinfab.spreadsheet import read_csv_lines
+from skinfab.spreadsheet import read_csv_rows
 
 _MAX_BYTES = 100_000_000
 #: Angles that all lie within this, degrees, may be radians; offsets that all do, mm, may be metres.
@@ -83,15 +82,14 @@ def read_targets(table: str | Path, folder: str | Path | None = None, *, columns
         two names in two groups.
     """
     table, columns = Path(table), columns or Columns()
-    lines, comma = read_csv_lines(table, max_bytes=_MAX_BYTES, wanted="a table of images and targets as CSV")
-    rows = list(csv.DictReader((line for line in lines if line.strip() and not line.startswith("#")), delimiter=comma))
+    rows = read_csv_rows(table, max_bytes=_MAX_BYTES, wanted="a table of images and targets as CSV")
     if not rows:
         raise InputError(f"{table} has no rows; give a line of headings and one line an image")
     for name in (columns.image, columns.offset, columns.angle):
         if name not in rows[0]:
             raise InputError(f"{table} has no column {name!r}; it has {', '.join(map(repr, rows[0]))}: name the right ones by options")
     names = [row[columns.image] or "" for row in rows]
-    places = [_place(name, Path(folder) if folder else table.parent) for name in names]
+    places = [_place(name, Path(folder) if folder else table.parent, table) for name in names]
     first: dict[Path, str] = {}
     for name, place in zip(names, places, strict=True):
         if (other := first.setdefault(place.resolve(), name)) is not name:
@@ -165,7 +163,10 @@ def _number(row: dict[str, str], name: str, table: Path, k: int) -> float:
     return value
 
 
-def _place(name: str, folder: Path) -> Path:
+def _place(name: str, folder: Path, table: Path) -> Path:
     """A table may name images by their way from itself, although their own folder was given."""
-    bare = folder / Path(name).name
-    return bare if not (folder / name).exists() and bare.exists() else folder / name
+    try:
+        bare = folder / Path(name).name
+        return bare if not (folder / name).exists() and bare.exists() else folder / name
+    except OSError as fault:  # too long
+        raise InputError(f"{table} names image {name[:80]!r}, which no file can be called; mend it") from fault
