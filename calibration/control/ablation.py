@@ -62,10 +62,11 @@ def figures_without(term: str, *, seeds: Sequence[int] = SEEDS) -> Figures:
         There is no such term.
     """
     human, robot, plant = _without(term)
-    fits = [calibrate(prepared(sensor), model="poly", degree=DEGREE[sensor.name]) for sensor in (human, robot)]
+    logs = [prepared(sensor) for sensor in (human, robot)]
+    fits = [calibrate(log, model="poly", degree=DEGREE[sensor.name]) for sensor, log in zip((human, robot), logs, strict=True)]
     errors = []
     for model in ("poly", "branches"):
-        inputs = [Input(calibrated(sensor, model)) for sensor in (human, robot)]
+        inputs = [Input(calibrated(sensor, model, log=log)) for sensor, log in zip((human, robot), logs, strict=True)]
         for name in ("uniform", "random"):
             runs = [follow(_motion(name, seed), _controller(inputs, plant), seed=seed, plant=plant, human=human) for seed in seeds]
             errors.append(mean_error(runs)[0])

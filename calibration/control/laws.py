@@ -61,11 +61,11 @@ class Published:
         """As `Rule.step`."""
         if human is None or robot is None:
             return None
-        target, far = self._human.angle(human)
-        aim = min(max(float(target), self._robot.low), self._robot.high)
-        angle, out = self._robot.angle(robot)
+        target, far = self._human.angle_of(human)
+        aim = min(max(target, self._robot.low), self._robot.high)
+        angle, out = self._robot.angle_of(robot)
         speed = self._gain * (float(self._robot.signal(aim)) - robot)
-        return Wanted(speed, aim, float(angle), Beyond(bool(far), aim != float(target), bool(out)))
+        return Wanted(speed, aim, angle, Beyond(far, aim != target, out))
 
 
 class Branches:
@@ -83,7 +83,7 @@ class Branches:
             return None
         (target, far), (angle, out) = of_human, of_robot
         aim = min(max(target, self._low), self._high)
-        return Wanted(self._gain * (aim - angle), aim, angle, Beyond(bool(far), aim != target, bool(out)))
+        return Wanted(self._gain * (aim - angle), aim, angle, Beyond(far, aim != target, out))
 
 
 class Full:
@@ -119,8 +119,8 @@ class Full:
         aim = min(max(target, self._curve.low), self._curve.high)
         # At an end of the range there is nothing to go on to.
         ahead = 0.0 if aim != target else speed + self._lag * acceleration
-        _, out = self._curve.angle(robot)
-        return Wanted(self._gain * (aim - angle) + ahead, aim, angle, Beyond(bool(far), aim != target, bool(out)))
+        _, out = self._curve.angle_of(robot)
+        return Wanted(self._gain * (aim - angle) + ahead, aim, angle, Beyond(far, aim != target, out))
 
     def _observed(self, time: float, robot: float | None, command: float) -> float | None:
         if (steps := self._driven.steps(time)) is None:

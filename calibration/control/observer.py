@@ -142,6 +142,6 @@ class Way:
             moved = now - sum(recent[:half]) / half
         else:
             now, moved = signal, 0.0
-        up, down = float(self._model.rising.angle(now)[0]), float(self._model.falling.angle(now)[0])
+        up, down = self._model.rising.angle_of(now)[0], self._model.falling.angle_of(now)[0]
         way = 0 if abs(moved) <= self._least else self._sign if moved > 0 else -self._sign
         return min(up, down), max(up, down), way, max(half - 1, 0) // 2

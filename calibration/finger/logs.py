@@ -52,7 +52,7 @@ def finger_log(sensor: FingerSensor, *, seed: int = SEED) -> tuple[FloatArray, F
     angle = np.concatenate([np.full(still, lows[0]), moving, np.full(still, lows[n])]).round(2)
     time = np.arange(len(angle)) / RATE_HZ
     reader = Reader(sensor, 0.0, np.random.default_rng([seed, 1]))
-    volts = np.array([reader.read(t, a).values[0] for t, a in zip(time.tolist(), angle.tolist(), strict=True)])
+    volts = np.array([reader.arrives(t, a)[1] for t, a in zip(time.tolist(), angle.tolist(), strict=True)])
     return time, angle, volts
 
 
@@ -75,7 +75,7 @@ def prepared(sensor: FingerSensor, *, seed: int = SEED) -> Prepared:
     return prepare(table, signal=f"{sensor.name}_V", angle="PIP_deg", limits=(10.0, 80.0))
 
 
-def calibrated(sensor: FingerSensor, model: str, *, seed: int = SEED) -> SensorCalibration:
+def calibrated(sensor: FingerSensor, model: str, *, seed: int = SEED, log: Prepared | None = None) -> SensorCalibration:
     """A simulated finger's calibration with the paper's degree, as `skinfab calibrate` makes it of the log.
 
     Parameters
@@ -86,8 +86,10 @@ def calibrated(sensor: FingerSensor, model: str, *, seed: int = SEED) -> SensorC
         One of `calibration.strain.models.MODELS`.
     seed : int
         Of the log.
+    log : Prepared, optional
+        What `prepared` gives, where that is there already.
     """
-    log = prepared(sensor, seed=seed)
+    log = log or prepared(sensor, seed=seed)
     found: Calibration = calibrate(log, model=model, degree=DEGREE[sensor.name])
     return SensorCalibration(
         found.model,

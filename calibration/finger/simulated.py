@@ -114,16 +114,20 @@ class Reader:
 
     def read(self, time: float, angle: float) -> Frame:
         """The frame that arrives now; at the start the first angle counts as having been there all along."""
+        measured, volts = self.arrives(time, angle)
+        frame = Frame(measured, time, self._count, np.array([volts]), np.array([True]), np.array([not 0.0 < volts < RAIL_V]))
+        self._count += 1
+        return frame
+
+    def arrives(self, time: float, angle: float) -> tuple[float, float]:
+        """The same without a frame about it: when it was measured, s, and the reading, V."""
         stretch = min(max(self._play.step(angle), self.sensor.curve.low), self.sensor.curve.high)
         change = 0.0
         for power in self._powers:
             change = change * stretch + power
         change += self.sensor.noise * self._rng.standard_normal()
         self._late.append((time, min(max(self.sensor.u0 * (1 + change), 0.0), RAIL_V)))
-        measured, volts = self._late[0]
-        frame = Frame(measured, time, self._count, np.array([volts]), np.array([True]), np.array([not 0.0 < volts < RAIL_V]))
-        self._count += 1
-        return frame
+        return self._late[0]
 
 
 class Finger:

@@ -8,6 +8,8 @@ with steps that are not negative.
 
 from __future__ import annotations
 
+import math
+from bisect import bisect_right
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -99,15 +101,33 @@ class Curve:
         InputError
             The curve turns, so that a reading can have two angles.
         """
-        if not self.monotone:
-            low, high = self.monotone_range
-            raise InputError(
-                f"the curve of degree {self.degree} turns within {self.low:g} to {self.high:g} degrees, so that a reading has two angles; "
-                f"fit it monotone, or over {low:.0f} to {high:.0f} degrees"
-            )
         u = np.asarray(signal, dtype=float)
         readings, angles = self._table
         return np.interp(u, readings, angles), (u < readings[0]) | (u > readings[-1])
+
+    def angle_of(self, reading: float) -> tuple[float, bool]:
+        """The same of one reading: a tenth of the time.
+
+        Raises
+        ------
+        InputError
+            As `angle`.
+
+        Examples
+        --------
+        >>> curve = Curve(10.0, 80.0, np.array([0.0, 0.1, 0.4]))
+        >>> curve.angle_of(0.5), curve.angle_of(0.0), round(curve.angle_of(0.15)[0], 3)
+        ((80.0, True), (10.0, False), 45.0)
+        """
+        readings, angles = self._steps
+        k = bisect_right(readings, reading) - 1
+        if k < 0:
+            return angles[0], True
+        if k == len(readings) - 1:
+            # No number is not less than any either.
+            return angles[-1] if reading >= readings[-1] else math.nan, reading > readings[-1]
+        slope = (angles[k + 1] - angles[k]) / (readings[k + 1] - readings[k])
+        return slope * (reading - readings[k]) + angles[k], False
 
     @property
     def coefficients(self) -> FloatArray:
@@ -144,12 +164,24 @@ class Curve:
 
     @cached_property
     def _table(self) -> tuple[FloatArray, FloatArray]:
-        """Readings, rising, and their angles."""
+        """Readings, rising, and their angles, where there is one angle to each."""
+        if not self.monotone:
+            low, high = self.monotone_range
+            raise InputError(
+                f"the curve of degree {self.degree} turns within {self.low:g} to {self.high:g} degrees, so that a reading has two angles; "
+                f"fit it monotone, or over {low:.0f} to {high:.0f} degrees"
+            )
         angles = np.linspace(self.low, self.high, _TABLE)
         readings = self.signal(angles)
         if not self.rising:
             angles, readings = angles[::-1], readings[::-1]
         return np.maximum.accumulate(readings), angles
+
+    @cached_property
+    def _steps(self) -> tuple[list[float], list[float]]:
+        """The same as floats."""
+        readings, angles = self._table
+        return readings.tolist(), angles.tolist()
 
     def _part(self, angle: ArrayLike) -> FloatArray:
         part: FloatArray = (np.asarray(angle, dtype=float) - self.low) / (self.high - self.low)

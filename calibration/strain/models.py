@@ -124,8 +124,7 @@ class _CurveTracker:
         self._curve = curve
 
     def step(self, time: float, signal: float) -> tuple[float, bool]:
-        angle, outside = self._curve.angle(signal)
-        return float(angle), bool(outside)
+        return self._curve.angle_of(signal)
 
 
 @dataclass(frozen=True, eq=False)
@@ -194,8 +193,8 @@ class _BranchTracker:
 
     def step(self, time: float, signal: float) -> tuple[float, bool]:
         part = (1 + (signal - self._play.step(signal)) / self._model.band) / 2
-        (up, up_out), (down, down_out) = self._model.rising.angle(signal), self._model.falling.angle(signal)
-        return float(part * up + (1 - part) * down), bool(up_out if part >= 0.5 else down_out)
+        (up, up_out), (down, down_out) = self._model.rising.angle_of(signal), self._model.falling.angle_of(signal)
+        return part * up + (1 - part) * down, up_out if part >= 0.5 else down_out
 
 
 @dataclass(frozen=True, eq=False)
@@ -242,10 +241,9 @@ class _PlayTracker:
         self._plays = [Play(radius) for radius in model.radii]
 
     def step(self, time: float, signal: float) -> tuple[float, bool]:
-        angle, outside = self._model.curve.angle(signal)
-        base = float(angle)
+        base, outside = self._model.curve.angle_of(signal)
         features = [base, *(each.step(base) for each in self._plays)]
-        return self._model.offset + sum(w * f for w, f in zip(self._model.weights, features, strict=True)), bool(outside)
+        return self._model.offset + sum(w * f for w, f in zip(self._model.weights, features, strict=True)), outside
 
 
 @dataclass(frozen=True, eq=False)
@@ -292,15 +290,14 @@ class _LagTracker:
     bases: deque[float] = field(default_factory=deque)
 
     def step(self, time: float, signal: float) -> tuple[float, bool]:
-        angle, outside = self.model.curve.angle(signal)
-        base = float(angle)
+        base, outside = self.model.curve.angle_of(signal)
         self.times.append(time)
         self.bases.append(base)
         while len(self.times) > 2 and self.times[1] <= time - self.model.lags[-1]:
             self.times.popleft()
             self.bases.popleft()
         features = [base, *(base - self._at(time - lag) for lag in self.model.lags)]
-        return self.model.offset + sum(w * f for w, f in zip(self.model.weights, features, strict=True)), bool(outside)
+        return self.model.offset + sum(w * f for w, f in zip(self.model.weights, features, strict=True)), outside
 
     def _at(self, time: float) -> float:
         k = bisect_right(self.times, time)

@@ -29,6 +29,10 @@ def test_there_and_back(steps: list[float], start: float, sign: int) -> None:
     assert not outside[1:-1].any()
     beyond = curve.ordinates[-1] + sign
     assert [float(each[0]) for each in curve.angle([beyond])] == [80.0, 1.0]
+    # One at a time to the last bit, also what is outside, or no number.
+    readings = [*curve.signal(np.linspace(10, 80, 83)).tolist(), *curve.ordinates.tolist(), beyond, start - sign, np.inf, -np.inf, np.nan]
+    for reading, angle, out in zip(readings, *(each.tolist() for each in curve.angle(readings)), strict=True):
+        np.testing.assert_equal(curve.angle_of(reading), (angle, out))
 
 
 def test_least_squares_is_numpys() -> None:
