@@ -67,5 +67,10 @@ def test_sentence_changes_with_the_tables() -> None:
     assert "the ratio of times is 1.00" in sentence(slower, REFINEMENT)
     assert "0.20 at most" not in sentence(TABLE, REFINEMENT)
     assert "1.00 at most, as SLIM did not get there" in sentence(TABLE, REFINEMENT[:-1])
+    as_flat = [
+        *TABLE,
+        {**next(r for r in TABLE if r["method"] == "isometric" and r["triangles"] == 400), "method": "bijective", "seconds": 1.9},
+    ]
+    assert "(bff) leaves 2 times as much of d - 4, and bijective takes 1.9 s to no more;" in sentence(as_flat, REFINEMENT)
     quickest = [r for r in TABLE if r["method"] not in ("bff", "xatlas")]
     assert "nothing is quicker" in sentence(quickest, REFINEMENT)
