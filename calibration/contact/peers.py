@@ -20,24 +20,22 @@ HIGH_PASS_HZ = 0.1
 FRAMES = 3
 
 
-def fixed_threshold(recording: Recording, *, threshold: float = THRESHOLD, signed: bool = False) -> list[Contact]:
+def fixed_threshold(recording: Recording, *, signed: bool = False) -> list[Contact]:
     """A contact is where the change from the first seconds is beyond a threshold; it ends at half of that.
 
     Parameters
     ----------
     recording : Recording
-    threshold : float
-        As a part of the reading at rest.
     signed : bool
         Count rises only.
     """
-    return _beyond(recording, _changes(recording), threshold, signed)
+    return _beyond(recording, _changes(recording), signed)
 
 
-def high_pass(recording: Recording, *, threshold: float = THRESHOLD) -> list[Contact]:
+def high_pass(recording: Recording) -> list[Contact]:
     """The same after a second-order Butterworth high-pass, which takes the drift away."""
     sections = signal.butter(2, HIGH_PASS_HZ, btype="high", fs=_rate(recording), output="sos")
-    return _beyond(recording, signal.sosfilt(sections, _changes(recording), axis=0), threshold, False)
+    return _beyond(recording, signal.sosfilt(sections, _changes(recording), axis=0), False)
 
 
 def _rate(recording: Recording) -> float:
@@ -59,13 +57,13 @@ def _changes(recording: Recording) -> FloatArray:
     return out
 
 
-def _beyond(recording: Recording, changes: FloatArray, threshold: float, signed: bool) -> list[Contact]:
+def _beyond(recording: Recording, changes: FloatArray, signed: bool) -> list[Contact]:
     contacts = []
     time = recording.device_time
     for j, name in enumerate(recording.stream.names):
         size = changes[:, j] if signed else np.abs(changes[:, j])
-        high = np.convolve(size >= threshold, np.ones(FRAMES), "full")[: len(size)] == FRAMES
-        low = size < threshold / 2
+        high = np.convolve(size >= THRESHOLD, np.ones(FRAMES), "full")[: len(size)] == FRAMES
+        low = size < THRESHOLD / 2
         k = 0
         while (rises := np.flatnonzero(high[k:])).size:
             first = k + int(rises[0])

@@ -44,14 +44,14 @@ class Score:
     end_errors: tuple[float, ...]
 
 
-def score(found: Sequence[Contact], truth: Sequence[Contact], *, end: float, start: float = 0.0) -> Score:
+def score(found: Sequence[Contact], truth: Sequence[Contact], *, end: float) -> Score:
     """Judge a trial.
 
     Parameters
     ----------
     found, truth : sequence of Contact
-    start, end : float, s
-        Of the trial; a contact that still lasts ends there.
+    end : float, s
+        Of the trial, which began at 0; a contact that still lasts ends there.
 
     Examples
     --------
@@ -84,7 +84,7 @@ def score(found: Sequence[Contact], truth: Sequence[Contact], *, end: float, sta
         len(right),
         sum(made[i][3] == were[j][3] for i, j in right),
         len(made) - len(touching),
-        (end - start) / 60,
+        end / 60,
         tuple(made[i][1] - were[j][1] for i, j in right),
         tuple(made[i][2] - were[j][2] for i, j in right),
     )

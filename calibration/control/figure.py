@@ -13,7 +13,7 @@ from calibration.strain.figure import FALLING, RISING, TRUE
 from skinfab.files import atomic_write
 
 
-def draw_runs(runs: Sequence[Run], path: str | Path, *, title: str, human: str = "human") -> None:
+def draw_runs(runs: Sequence[Run], path: str | Path, *, title: str) -> None:
     """Write the figure, PNG or PDF by its name: a panel a run. The robot is simulated, and that is said.
 
     Parameters
@@ -21,8 +21,6 @@ def draw_runs(runs: Sequence[Run], path: str | Path, *, title: str, human: str =
     runs : sequence of Run
     path : path
     title : str
-    human : str
-        Whose angle is followed.
     """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
@@ -31,7 +29,7 @@ def draw_runs(runs: Sequence[Run], path: str | Path, *, title: str, human: str =
     FigureCanvasAgg(figure)
     for k, (axes, run) in enumerate(zip(figure.subplots(len(runs), 1, squeeze=False)[:, 0], runs, strict=True)):
         time = run.motion.time
-        axes.plot(time, run.motion.angle, color=TRUE, linewidth=1.8, label=human)
+        axes.plot(time, run.motion.angle, color=TRUE, linewidth=1.8, label="human")
         axes.plot(time, run.robot, color=RISING, linewidth=1.0, label="robot (simulated)")
         idle = np.array([command.state != "run" for command in run.commands])
         if idle.any():

@@ -31,8 +31,8 @@ class Lead:
     (59.8, 20.0)
     """
 
-    def __init__(self, delay_s: float, period_s: float, *, bandwidth: float = BANDWIDTH) -> None:
-        w = bandwidth
+    def __init__(self, delay_s: float, period_s: float) -> None:
+        w = BANDWIDTH
         chain = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [-(w**3), -3 * w**2, -3 * w]])
         # Between steps the input counts as a straight line, so that of a steady motion nothing is lost.
         whole = np.zeros((5, 5))

@@ -64,14 +64,14 @@ def uniform(*, period_s: float = 8.0, length_s: float = LENGTH_S) -> Motion:
     return Motion("uniform", time, angle)
 
 
-def random(seed: int, *, slowest_s: float = SLOWEST_S, length_s: float = LENGTH_S) -> Motion:
+def random(seed: int) -> Motion:
     """Half cycles of random length and reach, as fig. 5B."""
     rng = np.random.default_rng([seed, 2])
-    time = np.arange(round(length_s * RATE_HZ)) / RATE_HZ
+    time = np.arange(round(LENGTH_S * RATE_HZ)) / RATE_HZ
     angle = np.empty(len(time))
     began, now, up = 0.0, LOW_DEG, True
-    while began < length_s:
-        lasts = FASTEST_S * (slowest_s / FASTEST_S) ** rng.random() / 2
+    while began < LENGTH_S:
+        lasts = FASTEST_S * (SLOWEST_S / FASTEST_S) ** rng.random() / 2
         goal = rng.uniform(TURNS_DEG[1], TOP_DEG) if up else rng.uniform(LOW_DEG, TURNS_DEG[0])
         part = (time - began) / lasts
         during = (part >= 0) & (part < 1)

@@ -68,14 +68,13 @@ class Marker:
     lines: Lines
     cased: bool = False
 
-    def sensors(self, sensors: Iterable[Sensor], findings: Findings, *, also_wrong: Iterable[str] = ()) -> list[Box]:
+    def sensors(self, sensors: Iterable[Sensor], findings: Findings) -> list[Box]:
         """Conductors as wide as their beads, in the colour of whether they fit, with their names; where the names are."""
         names = []
-        wrong = {*findings, *also_wrong}
         for sensor in sensors:
             px = self.plane.to_px(self.lines.of(sensor, self.sheet))
             width = max(sensor.pattern.bead * self.plane.scale / self.pen.ratio, _LEAST_BEAD_PX)
-            colour = self.theme.error if sensor.id in wrong else self.theme.ink
+            colour = self.theme.error if sensor.id in findings else self.theme.ink
             if self.cased:
                 self.pen.line(px, self.theme.view, width + 2.5)
             self.pen.line(px, colour, width)

@@ -84,7 +84,7 @@ def follow(C: FloatArray, kind: int, x: float, y: float, k: float, step: float, 
     return first, False
 
 
-def contour(C: FloatArray, kind: int, geometry: Geometry, peak: Peak, *, part: float, step: float = STEP) -> tuple[FloatArray, bool]:
+def contour(C: FloatArray, kind: int, geometry: Geometry, peak: Peak, *, part: float) -> tuple[FloatArray, bool]:
     """The line around a peak at a part of its height.
 
     Parameters
@@ -96,8 +96,6 @@ def contour(C: FloatArray, kind: int, geometry: Geometry, peak: Peak, *, part: f
     peak : Peak
     part : float
         Of the peak's height, from 0 to 1.
-    step : float
-        Of the line, tactels.
 
     Returns
     -------
@@ -118,7 +116,7 @@ def contour(C: FloatArray, kind: int, geometry: Geometry, peak: Peak, *, part: f
     start = _outward(C, kind, x, y, k)
     if start is None:
         return np.empty((0, 2)), False
-    points, closed = follow(C, kind, *start, k, step, CONTOUR_HEIGHT)
+    points, closed = follow(C, kind, *start, k, STEP, CONTOUR_HEIGHT)
     return points * np.array([geometry.ring_pitch, 2 * math.pi / geometry.stripes]), bool(closed)
 
 

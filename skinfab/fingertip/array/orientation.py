@@ -121,10 +121,6 @@ class SpanFinder:
     Parameters
     ----------
     geometry : Geometry
-    method : str
-        Of interpolation.
-    floor : float
-        A frame whose highest tactel reads less has no contact.
 
     Examples
     --------
@@ -136,10 +132,10 @@ class SpanFinder:
     (90, True)
     """
 
-    def __init__(self, geometry: Geometry, method: str = "sinc", *, floor: float = 0.0) -> None:
+    def __init__(self, geometry: Geometry) -> None:
         self.geometry = geometry
-        self._coefficients = Coefficients(method, geometry.shape)
-        self._peaks = PeakFinder(geometry, method, floor=floor)
+        self._coefficients = Coefficients("sinc", geometry.shape)
+        self._peaks = PeakFinder(geometry, "sinc")
 
     def outline(self, Z: FloatArray) -> FloatArray:
         """The contour at 75 %, (n, 2), mm along and mm around on the core, where the tactels are; empty where there is none."""

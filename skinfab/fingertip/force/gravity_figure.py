@@ -51,8 +51,8 @@ def draw_centres(
         figure.savefig(partial)
 
 
-def ellipses(centre: Centre, points: int = 61) -> NDArray[np.float64]:
-    """Three closed lines (3, points, 3), mm: where the ellipsoid of 95 % cuts the planes of its axes.
+def ellipses(centre: Centre) -> NDArray[np.float64]:
+    """Three closed lines (3, 61, 3), mm: where the ellipsoid of 95 % cuts the planes of its axes.
 
     Examples
     --------
@@ -62,7 +62,7 @@ def ellipses(centre: Centre, points: int = 61) -> NDArray[np.float64]:
     """
     values, directions = np.linalg.eigh(centre.covariance)
     axes = _STATED_SD * np.sqrt(values) * directions
-    angle = np.linspace(0, 2 * np.pi, points)[:, None]
+    angle = np.linspace(0, 2 * np.pi, 61)[:, None]
     return np.stack([centre.point + np.cos(angle) * axes[:, j] + np.sin(angle) * axes[:, (j + 1) % 3] for j in range(3)])
 
 

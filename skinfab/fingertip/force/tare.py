@@ -16,7 +16,7 @@ LEAST_SAMPLES = 10
 _STEADY_SD = 6.0
 
 
-def tared(log: WrenchLog, *, seconds: float, noise: SensorNoise | None = None) -> WrenchLog:
+def tared(log: WrenchLog, *, seconds: float) -> WrenchLog:
     """The log less what it read in its first seconds, in which nothing may touch the finger.
 
     Raises
@@ -30,7 +30,7 @@ def tared(log: WrenchLog, *, seconds: float, noise: SensorNoise | None = None) -
     >>> float(np.abs(tared(log, seconds=0.1).force).max()) < 1e-12
     True
     """
-    noise = noise or SensorNoise()
+    noise = SensorNoise()
     rest = log.time < log.time[0] + seconds
     count = int(rest.sum())
     if count < LEAST_SAMPLES:

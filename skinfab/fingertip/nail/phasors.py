@@ -65,7 +65,7 @@ class Phasors:
         return len(self.drive)
 
 
-def find_drive(values: FloatArray, rate_hz: float, *, band_hz: tuple[float, float] = BAND_HZ) -> FloatArray:
+def find_drive(values: FloatArray, rate_hz: float) -> FloatArray:
     """The motor's frequency in each window.
 
     Channels count by their own scale, so that units do not matter. From the top of their common spectrum it is refined by how far the
@@ -76,7 +76,6 @@ def find_drive(values: FloatArray, rate_hz: float, *, band_hz: tuple[float, floa
     values : (n, samples, channels) float
         NaN where a reading is missing.
     rate_hz : float
-    band_hz : (low, high)
 
     Returns
     -------
@@ -98,7 +97,7 @@ def find_drive(values: FloatArray, rate_hz: float, *, band_hz: tuple[float, floa
     samples = values.shape[1]
     if samples < FIND_SHORTEST:
         raise InputError(f"{samples} readings are too few to find the motor's frequency in; {FIND_SHORTEST} are needed")
-    low, high = band_hz[0], min(band_hz[1], 0.48 * rate_hz)
+    low, high = BAND_HZ[0], min(BAND_HZ[1], 0.48 * rate_hz)
     if not low < high:
         raise InputError(f"{rate_hz:g} readings a second are too few for a motor of {low:g} Hz and more; sample faster")
     there = np.isfinite(values)

@@ -76,10 +76,10 @@ def stretched(image: Image) -> Image:
     return cv2.LUT(smooth, table)  # type: ignore[return-value]
 
 
-def merged(image: Image, *, steps: int = STEPS) -> Image:
+def merged(image: Image) -> Image:
     """Where pins have come close, with the pins that stand alone: dilated, eroded, black and white."""
     kernel = np.ones((3, 3), np.uint8)
-    return white(cv2.erode(cv2.dilate(image, kernel, iterations=steps), kernel, iterations=steps))
+    return white(cv2.erode(cv2.dilate(image, kernel, iterations=STEPS), kernel, iterations=STEPS))
 
 
 def white(image: NDArray[Any]) -> Image:
