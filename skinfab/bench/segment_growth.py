@@ -20,6 +20,7 @@ from skinfab.seams.judge import Limits
 #: A method that would take longer on a size, s, by its growth so far, is left out from there on: a table is made while one waits.
 LONGEST_S = 300.0
 
+_COLOURS = ("#0b6e4f", "#2b5c9e", "#b5451b")
 _DPI = 150
 
 
@@ -53,7 +54,7 @@ def follow(
         for method in (*aims, *([] if peer is None else [peer.name])):
             seconds = expected([row for row in rows if row.method == method], size)
             if seconds > longest_s:
-                notes.append(f"{method} was left out from {size} triangles on: by its growth it would have taken {seconds:.2g} s there")
+                notes.append(f"{method} was left out from {size} triangles on: by its growth it would have taken {seconds:.0f} s there")
                 aims = [aim for aim in aims if aim != method]
                 peer = None if peer is not None and peer.name == method else peer
         ball = (f"ball {size}", Mesh(*bumpy_ball(size), f"ball {size}"))
@@ -79,32 +80,35 @@ def growth_sentence(table: Sequence[Mapping[str, Any]]) -> str:
     powers, said = exponents(table), []
     for method in dict.fromkeys(row["method"] for row in table):
         row = max((row for row in table if row["method"] == method), key=lambda row: row["triangles"])
-        memory = "" if row["peak_mb"] is None else f" and {row['peak_mb']:.3g} MB"
+        memory = "" if row["peak_mb"] is None else f" and {row['peak_mb']:.0f} MB"
         power = f", growing with the triangles to the power of {powers[method]:.2f}" if method in powers else ""
         said.append(f"{method} takes {row['seconds']:.3g} s{memory} for {row['triangles']} triangles{power}")
     return f"On a ball with bumps, at mean d {Limits.mean:g}, " + "; ".join(said) + "."
 
 
 def draw_growth(table: Sequence[Mapping[str, Any]], path: Path, *, notes: Sequence[str] = ()) -> None:
-    """Write the chart as PNG: processor time and memory against triangles, a line for each method, its pieces beside each point."""
+    """Write the chart as PNG: processor time and memory against triangles, a line for each method."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(10.4, 4.9), dpi=_DPI)
     FigureCanvasAgg(figure)
-    figure.subplots_adjust(left=0.07, right=0.985, top=0.89, bottom=0.16 + 0.035 * len(notes), wspace=0.16)
+    figure.subplots_adjust(left=0.07, right=0.985, top=0.89, bottom=0.12 + 0.035 * len(notes), wspace=0.16)
     figure.suptitle(f"Automatic seams at mean d {Limits.mean:g}, from coarse balls to fine")
     powers = exponents(table)
-    for axes, what, label in zip(figure.subplots(1, 2), ("seconds", "peak_mb"), ("processor time, s", "rise of memory, MB"), strict=True):
-        for method in dict.fromkeys(row["method"] for row in table):
+    for axes, what, along in zip(figure.subplots(1, 2), ("seconds", "peak_mb"), ("processor time, s", "rise of memory, MB"), strict=True):
+        for k, method in enumerate(dict.fromkeys(row["method"] for row in table)):
             rows = [row for row in table if row["method"] == method and row[what] is not None]
-            power = f" (power of {powers[method]:.2f})" if what == "seconds" and method in powers else ""
-            axes.plot([row["triangles"] for row in rows], [row[what] for row in rows], "o-", label=method + power)
-            for row in rows if what == "seconds" else []:
-                axes.annotate(f"{row['pieces']}", (row["triangles"], row[what]), (4, -9), textcoords="offset points", fontsize=7)
-        axes.set(xscale="log", yscale="log", xlabel="triangles", ylabel=label)
+            said = f": {_pieces(rows)}" + (f", power of {powers[method]:.2f}" if method in powers else "")
+            label = method + (said if what == "seconds" else "")
+            axes.plot([row["triangles"] for row in rows], [row[what] for row in rows], "o-", color=_COLOURS[k], label=label)
+        axes.set(xscale="log", yscale="log", xlabel="triangles", ylabel=along)
         axes.grid(True, which="both", lw=0.3, alpha=0.6)
         axes.legend(fontsize=8)
-    marks = "beside each point: its pieces"
-    figure.text(0.5, 0.012, "\n".join([marks, *notes]), ha="center", va="bottom", fontsize=8)
+    figure.text(0.5, 0.012, "\n".join(notes), ha="center", va="bottom", fontsize=8)
     atomic_write(path, png(figure))
+
+
+def _pieces(rows: Sequence[Mapping[str, Any]]) -> str:
+    few, many = min(row["pieces"] for row in rows), max(row["pieces"] for row in rows)
+    return f"{many} piece" + "s" * (many != 1) if few == many else f"{few} to {many} pieces"
