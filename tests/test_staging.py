@@ -9,6 +9,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -110,7 +111,7 @@ try:
 except InputError as fault:
     print(fault)
 """
-    limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, 100_000))  # noqa: E731
+    limit = partial(resource.setrlimit, resource.RLIMIT_FSIZE, (100_000, 100_000))
     said = subprocess.run([sys.executable, "-c", program], preexec_fn=limit, capture_output=True, text=True)
     assert said.stdout == f"cannot write {tmp_path}: File too large\n" and list(tmp_path.iterdir()) == []
 
@@ -153,7 +154,7 @@ module.add_parser = add_parser
 sys.modules["skinfab.cli.make"] = module
 sys.exit(frame.main(["make"]))
 """
-    default = lambda: signal.signal(signal.SIGINT, signal.default_int_handler)  # noqa: E731
+    default = partial(signal.signal, signal.SIGINT, signal.default_int_handler)
     work = subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, preexec_fn=default)
     assert work.stdout is not None and work.stdout.readline() == "go\n"
     time.sleep(delay_s)

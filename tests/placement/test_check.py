@@ -49,8 +49,7 @@ def test_outside_says_by_how_much(sheet: Callable, dx: float, says: str) -> None
 
 
 def test_a_hole_counts(sheet: Callable) -> None:
-    hole = lambda c: (np.abs(c - 30) < 5).all(axis=1)  # noqa: E731
-    _, piece = sheet(60, 60, without=hole)
+    _, piece = sheet(60, 60, without=lambda c: (np.abs(c - 30) < 5).all(axis=1))
     assert piece.topology.euler == 0
     across = put(20, 30, pattern=StrainLines(l1=30, l2=24, b=6))
     assert any("outside piece P1" in f for f in check_sensor(piece, across, (), material=MATERIAL))
@@ -62,8 +61,7 @@ def test_a_hole_counts(sheet: Callable) -> None:
 def test_a_small_hole_inside_a_turn_counts(sheet: Callable) -> None:
     # The bead goes round the hole: nothing is outside, but the margin to the hole is broken.
     wide = StrainLines(l1=50, l2=40, b=15, lines=2)
-    hole = lambda c: (np.abs(c - [30, 30]) < [1, 7]).all(axis=1)  # noqa: E731
-    _, piece = sheet(80, 60, step=1, without=hole)
+    _, piece = sheet(80, 60, step=1, without=lambda c: (np.abs(c - [30, 30]) < [1, 7]).all(axis=1))
     (text,) = check_sensor(piece, put(15, 22.5, pattern=wide), (), material=MATERIAL)
     assert "too close to the edge" in text
 

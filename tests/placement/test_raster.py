@@ -13,13 +13,15 @@ def boundary(piece: object) -> np.ndarray:
 
 
 def test_clearance_is_right_to_about_a_step(sheet: Callable) -> None:
-    hole = lambda c: (np.abs(c - [20, 30]) < 6).all(axis=1)  # noqa: E731
+    def hole(c: np.ndarray) -> np.ndarray:
+        return (np.abs(c - [20, 30]) < 6).all(axis=1)
+
     _, piece = sheet(60, 60, without=hole, step=2)
     edges = boundary(piece)
     raster = Raster(edges, np.zeros((0, 2, 2)))
     walls = shapely.MultiLineString(list(edges))
     points = np.random.default_rng(0).uniform(0, 60, (500, 2))
-    inside = ~((np.abs(points - [20, 30]) < 6).all(axis=1))
+    inside = ~hole(points)
     exact = np.where(inside, shapely.distance(shapely.points(points), walls), 0.0)
     assert np.abs(raster.clearance_at(points) - exact).max() < 1.6 * raster.step
     assert (raster.clearance_at(np.array([[-5.0, 3.0], [1e6, 0.0], [20.0, 30.0]])) == 0).all()
