@@ -164,7 +164,7 @@ def _row(head: Sequence[str], row: Sequence[str], where: str) -> Wire:
             wanted = {"str": "a name", "int": "a whole number", "float": "a number"}[str(field.type)]
             raise InputError(f"{where}: {field.name} is {text!r}; it must be {wanted}")
         values[field.name] = value
-    return Wire(**values)  # type: ignore[arg-type]
+    return Wire(**values)  # type: ignore[arg-type]  # each has its field's type, by the loop
 
 
 def _require_sound(wires: Sequence[Wire], where: str) -> None:

@@ -7,6 +7,7 @@ import time
 import tkinter as tk
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from tkinter import ttk
 from typing import Literal
 
@@ -214,13 +215,13 @@ class Plots(ttk.Frame):
         lost, valid = Ink(_mixed(theme.view, theme.faint, 0.25), theme.faint), None if now.newest is None else now.newest.valid
         inks = [lost if valid is not None and not valid[k] else touched if names[k] in now.touched else plain for k in shown]
         low, high = self._scales.low[columns], self._scales.high[columns]
-        options = {"grid": grid, "grid_colour": theme.border, "width_px": 1.3 * self._dpi}
+        strip = partial(strips, grid=grid, grid_colour=theme.border, width_px=1.3 * self._dpi)
         first = Spans(found.low[:, :c], found.high[:, :c])
-        picture = strips(first, low[:c], high[:c], inks, height=heights[0], **options)  # type: ignore[arg-type]
+        picture = strip(first, low[:c], high[:c], inks, height=heights[0])
         if heights[1]:
             last = Spans(found.low[:, c:], found.high[:, c:])
             ink = [Ink(theme.view, theme.good)]
-            picture = np.vstack([picture, strips(last, low[c:], high[c:], ink, height=heights[1], **options)])  # type: ignore[arg-type]
+            picture = np.vstack([picture, strip(last, low[c:], high[c:], ink, height=heights[1])])
         return picture
 
     def _paste(self, picture: NDArray[np.uint32]) -> None:

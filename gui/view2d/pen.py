@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 import numpy as np
+from matplotlib.backend_bases import GraphicsContextBase
 from matplotlib.backends.backend_agg import RendererAgg
 from matplotlib.colors import to_rgba
 from matplotlib.path import Path
@@ -44,13 +45,13 @@ class Pen:
         self.width, self.height = int(renderer.width), int(renderer.height)
         self.touched: list[Box] = []
 
-    def line(self, points: ArrayLike, colour: str, width: float, *, closed: bool = False, alpha: float = 1.0, dashed: bool = False) -> None:
+    def line(self, points: ArrayLike, colour: str, width: float, *, closed: bool = False, dashed: bool = False) -> None:
         """One line through points (k, 2)."""
-        self._stroke([np.asarray(points, dtype=float)], colour, width, closed=closed, alpha=alpha, dashed=dashed)
+        self._stroke([np.asarray(points, dtype=float)], colour, width, closed=closed, dashed=dashed)
 
-    def lines(self, parts: Sequence[Float], colour: str, width: float, *, closed: bool = False, alpha: float = 1.0) -> None:
+    def lines(self, parts: Sequence[Float], colour: str, width: float, *, alpha: float = 1.0) -> None:
         """Many lines of the same looks in one go."""
-        self._stroke([p for p in parts if len(p) > 1], colour, width, closed=closed, alpha=alpha)
+        self._stroke([p for p in parts if len(p) > 1], colour, width, alpha=alpha)
 
     def disk(self, at: ArrayLike, radius: float, fill: str, edge: str, width: float = 1.5) -> None:
         """A filled circle."""
@@ -121,7 +122,9 @@ class Pen:
         cover = mask[i0 - top : i1 - top, j0 - left : j1 - left, None] * np.float32(1 / 255)
         part[:] = part + (np.array(rgb(colour), dtype=np.float32) - part) * cover
 
-    def _stroke(self, parts: list[Float], colour: str, width: float, *, closed: bool, alpha: float, dashed: bool = False) -> None:
+    def _stroke(
+        self, parts: list[Float], colour: str, width: float, *, closed: bool = False, alpha: float = 1.0, dashed: bool = False
+    ) -> None:
         if not parts:
             return
         if closed:
@@ -141,7 +144,7 @@ class Pen:
         low, high = vertices.min(axis=0), vertices.max(axis=0)
         self._touch((low[0], low[1], high[0], high[1]), width)
 
-    def _gc(self, colour: str, width: float, alpha: float = 1.0):  # type: ignore[no-untyped-def]
+    def _gc(self, colour: str, width: float, alpha: float = 1.0) -> GraphicsContextBase:
         gc = self._renderer.new_gc()
         gc.set_foreground((*to_rgba(colour)[:3], alpha), isRGBA=True)
         gc.set_linewidth(width * self.ratio * 72 / self._renderer.dpi)

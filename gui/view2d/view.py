@@ -82,8 +82,10 @@ class View2D(ttk.Frame):
         self.surface.widget.pack(fill="both", expand=True)
         self.hands = Hands(self)
         self.cursor = KeyCursor(self.hands, self.surface.widget, colours=lambda: (self.theme.accent, self.theme.view))
-        for topic, callback in (("skin", self._on_skin), ("file", self.fit), ("shading", self.redraw), ("tool", self._on_tool)):
-            session.listen(topic, callback)  # type: ignore[arg-type]
+        session.listen("skin", self._on_skin)
+        session.listen("file", self.fit)
+        session.listen("shading", self.redraw)
+        session.listen("tool", self._on_tool)
         session.listen("selection", self._on_selection)
         session.listen("hover", self.surface.refresh)
         self._skin: Skin | None = None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Iterable
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -45,7 +45,7 @@ class Scene:
     def __init__(self, session: Session, derived: Derived, theme: Theme, *, dpi: float = 1.0) -> None:
         self.theme = theme
         self._session, self._derived, self._dpi = session, derived, dpi
-        self._kept: dict[str, tuple[tuple[Hashable, ...], tuple[object, ...], object]] = {}
+        self._kept: dict[str, tuple[tuple[Hashable, ...], tuple[object, ...], Any]] = {}
         self._overlays: dict[str, Strokes] = {}
         self._lights: dict[str, Spots] = {}
 
@@ -185,7 +185,7 @@ class Scene:
         if kept is None or kept[0] != key or len(kept[1]) != len(of) or any(a is not b for a, b in zip(kept[1], of, strict=True)):
             kept = key, of, make()
             self._kept[what] = kept
-        value: T = kept[2]  # type: ignore[assignment]
+        value: T = kept[2]
         return value
 
 

@@ -40,7 +40,7 @@ class Options:
         subparsers = argparse.ArgumentParser(allow_abbrev=False).add_subparsers()
         make.add_parser(subparsers)
         self._parser: argparse.ArgumentParser = subparsers.choices["make"]
-        self._parser.error = _raise  # type: ignore[method-assign]
+        self._parser.error = _raise  # type: ignore[method-assign]  # its own ends the process
         options = [action for action in self._parser._actions if action.option_strings]
         self._actions = {action.option_strings[-1].removeprefix("--"): action for action in options}
         self._defaults = vars(self._parse("mesh.obj", {}))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -95,7 +96,7 @@ def measure(*, frames: int = FRAMES, repeats: int = REPEATS, progress: Progress 
     seconds: dict[str, list[float]] = {name: [] for name in ways}
     for _ in range(repeats):
         for name, way in ways.items():
-            seconds[name].append(timed_twice(lambda way=way, name=name: way.decode(few[name]))[1])  # type: ignore[misc]
+            seconds[name].append(timed_twice(partial(way.decode, few[name]))[1])
     sent = {k: tuple(row) for k, row in enumerate(values.astype(float).tolist())}
     rows = []
     cases = [(name, fault, rate) for name in ways for fault in (FLIPS, LOSSES) for rate in RATES]

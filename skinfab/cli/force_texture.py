@@ -74,7 +74,7 @@ def simulate(args: argparse.Namespace) -> int:
     if args.json:
         print(json.dumps(result))
         return 0
-    materials = len(set(result["labels"].values()))  # type: ignore[attr-defined]
+    materials = len({log.label for log in logs})
     print(f"{args.output}: {len(logs)} simulated slides over {args.specimens} specimens of {materials} materials")
     return 0
 

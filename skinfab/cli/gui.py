@@ -25,7 +25,7 @@ def run(args: argparse.Namespace) -> int:
     if args.file is not None and not args.file.is_file():
         raise InputError(f"{args.file}: {'is a folder; give a file in it' if args.file.is_dir() else 'no such file'}")
     try:
-        import tkinter  # noqa: F401
+        import tkinter  # noqa: F401 - whether it is there
     except ImportError as fault:
         raise InputError("this Python has no tkinter; install it (Debian: apt install python3-tk) and run again") from fault
     from gui.app import run as open_window

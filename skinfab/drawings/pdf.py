@@ -173,11 +173,11 @@ class _Pen:
     def text(self, words: str, at: Any, height: float, colour: str, *, left: bool = False) -> None:
         from matplotlib.text import Text
 
-        align = {"ha": "left" if left else "center", "va": "center"}
+        side = "left" if left else "center"
         size = height * POINTS_PER_MM
         x, y = at
         # A dollar sign is one, and not the beginning of a formula.
-        text = Text(float(x), float(y), words, fontsize=size, color=colour, parse_math=False, **align)  # type: ignore[arg-type]
+        text = Text(float(x), float(y), words, fontsize=size, color=colour, parse_math=False, ha=side, va="center")
         text.set_transform(self.place)
         self._add(text)
 

@@ -73,12 +73,13 @@ def seam_sides(pieces: Sequence[Piece]) -> list[SeamSide]:
             if meets is not None and not label:
                 label = str(len(set(labels.values())) + 1)
                 middle = run[_middle(pieces[p].UV[loop[np.r_[run, (run[-1] + 1) % len(loop)]]])]
+                opposite = partner[(p, middle)]
                 for k in run:
                     other = partner[(p, k)]
-                    assert other is not None  # a run is sewn along its whole length
+                    assert other is not None and opposite is not None  # a run is sewn along its whole length
                     labels[(p, k)] = labels[other] = label
                     notches[(p, k)] = middle
-                    notches[other] = partner[(p, middle)][1]  # type: ignore[index]
+                    notches[other] = opposite[1]
             kind: Literal["seam", "dart", "border"] = "border" if meets is None else "dart" if meets[0] == p else "seam"
             notch = notches.get((p, run[0]), run[len(run) // 2])
             sides.append(_side(label, kind, p, pieces[p].UV[loop], run, notch))

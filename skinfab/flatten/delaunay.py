@@ -117,7 +117,7 @@ def _flip(F: IntArray, length: FloatArray, twin: IntArray, spare: IntArray, most
         t = twin[h]
         if t < 0:
             continue
-        f, k, g, l = h // 3, h % 3, t // 3, t % 3  # noqa: E741
+        f, k, g, l = h // 3, h % 3, t // 3, t % 3  # noqa: E741 - l to g as k to f
         k1, k2, l1, l2 = (k + 1) % 3, (k + 2) % 3, (l + 1) % 3, (l + 2) % 3
         a, b, c, d = F[f, k], F[f, k1], F[f, k2], F[g, l]
         if f == g or a == d or spare[b] <= 0 or spare[c] <= 0:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -207,17 +207,14 @@ class Recording:
         each = list(frames)
         c = len(stream.channels)
 
-        def table(rows: Sequence[NDArray[np.generic]], kind: type) -> NDArray[np.generic]:
-            return np.array(rows, dtype=kind).reshape(-1, c)
-
         return cls(
             stream,
             np.array([f.device_time for f in each], dtype=float),
             np.array([f.host_time for f in each], dtype=float),
             np.array([f.sequence for f in each], dtype=np.int64),
-            table([f.values for f in each], float),  # type: ignore[arg-type]
-            table([f.valid for f in each], bool),  # type: ignore[arg-type]
-            table([f.saturated for f in each], bool),  # type: ignore[arg-type]
+            np.array([f.values for f in each], dtype=float).reshape(-1, c),
+            np.array([f.valid for f in each], dtype=bool).reshape(-1, c),
+            np.array([f.saturated for f in each], dtype=bool).reshape(-1, c),
         )
 
     @classmethod

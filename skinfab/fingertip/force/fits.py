@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -119,10 +119,16 @@ def fit_cuboid(point: FloatArray, normal: FloatArray) -> Fit:
         sign = np.sign(along[np.arange(len(face)), face])
         same = [(i, j) for i, j in itertools.combinations(range(len(face)), 2) if face[i] == face[j] and sign[i] == sign[j]]
 
-        def residuals(x: FloatArray, start: FloatArray = start, face: FloatArray = face, sign: FloatArray = sign) -> FloatArray:
+        def residuals(
+            x: FloatArray,
+            start: FloatArray = start,
+            face: FloatArray = face,
+            sign: FloatArray = sign,
+            same: Sequence[tuple[int, int]] = same,
+        ) -> FloatArray:
             turn = Rotation.from_rotvec(x).as_matrix() @ start
             out = sign[:, None] * turn[:, face].T
-            flat = [out[i] @ (point[i] - point[j]) / (POINT_SD_MM * math.sqrt(2)) for i, j in same]  # noqa: B023
+            flat = [out[i] @ (point[i] - point[j]) / (POINT_SD_MM * math.sqrt(2)) for i, j in same]
             return np.concatenate([_angles(normal, out), flat])
 
         rough = float(np.sum(residuals(np.zeros(3)) ** 2))

@@ -168,7 +168,7 @@ def _label(cells: dict[str, str], where: str) -> Label:
         numbers["end_s"] = math.inf
     if not 0 <= numbers["start_s"] < numbers["end_s"]:
         raise InputError(f"{where}: {numbers['start_s']:g} to {numbers['end_s']:g} s is no time of a log; the start must be before the end")
-    return Label(**words, **numbers)  # type: ignore[arg-type]
+    return Label(**words, **numbers)  # type: ignore[arg-type]  # words and numbers have their fields' types
 
 
 def _number(cell: str, where: str) -> float:
