@@ -174,10 +174,15 @@ def tabs(album: Album, window: Window) -> None:
 
 
 def touched(window: Window) -> str:
-    """The readings that say that their sensor is touched."""
+    """The strips that say that a sensor is touched, such as C1 (S2); not those of channels that are no sensor's, which light nothing."""
     canvas = f"{TABS}.live.plots.canvas"
-    texts = window.tcl(f'join [lmap i [{canvas} find all] {{expr {{[{canvas} type $i] eq "text" ? [{canvas} itemcget $i -text] : ""}}}}] |')
-    return "|".join(text.split(",")[0] + f" {k}" for k, text in enumerate(texts.split("|")) if text.startswith("touched"))
+    texts = window.tcl(
+        f'join [lmap i [{canvas} find all] {{expr {{[{canvas} type $i] eq "text" ? '
+        f'"[lindex [{canvas} coords $i] 1] [{canvas} itemcget $i -text]" : "0 -"}}}}] |'
+    )
+    placed = [text.split(" ", 1) for text in texts.split("|")]
+    rows = {float(y) for y, text in placed if text.startswith("touched")}
+    return "|".join(text for y, text in placed if float(y) in rows and text.endswith(")"))
 
 
 def rest(window: Window, tenths: int) -> None:
