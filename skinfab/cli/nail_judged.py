@@ -66,7 +66,8 @@ def judged(path: Path, log: Log, told: Sequence[Told], samples: int, content: An
 
 def _by_histograms(model: Any, values: Any) -> str | None:
     """What the published method says of a trial, by windows that begin with it."""
-    from skinfab.fingertip.nail.train import by_histograms, whole
+    from skinfab.fingertip.nail.held_out import by_histograms
+    from skinfab.fingertip.nail.train import whole
 
     return str(model.names[by_histograms(model, values)]) if len(whole(values)) >= model.samples else None
 

@@ -12,8 +12,8 @@ from skinfab.cli import steps
 from skinfab.cli.nail_errors import mean_errors, off_line
 
 if TYPE_CHECKING:
+    from skinfab.fingertip.nail.held_out import Held
     from skinfab.fingertip.nail.labels import Trial
-    from skinfab.fingertip.nail.train import Held
 
 #: Ten simulated participants, each asked by the models of the nine others; their own: 88, 98 and 89 % (docs/nail.md).
 _ANOTHER = "another's was told right in 46 % of four edges, 81 % of six pins and 55 % of twelve edges, simulated"
@@ -42,11 +42,12 @@ def run(args: argparse.Namespace) -> int:
 
     from skinfab.errors import InputError
     from skinfab.files import require_place
+    from skinfab.fingertip.nail.held_out import judge, splits_of
     from skinfab.fingertip.nail.labels import read_trials
     from skinfab.fingertip.nail.model_file import NailFile, save_nail
     from skinfab.fingertip.nail.prints import kept_of
     from skinfab.fingertip.nail.regress import Regression, learnable, targets_of
-    from skinfab.fingertip.nail.train import WINDOW, judge, prepare, splits_of
+    from skinfab.fingertip.nail.train import WINDOW, prepare
 
     require_place(args.output)
     if args.output.exists() and args.output.samefile(args.labels):

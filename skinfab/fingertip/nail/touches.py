@@ -52,3 +52,17 @@ def touches_of(labels: Sequence[Label]) -> tuple[list[str], list[str]]:
             "than of new ones; name each touch in the column trial"
         )
     return out, notes
+
+
+def touches_by_class(labels: Sequence[Label]) -> dict[str, int]:
+    """How often each class was touched.
+
+    Examples
+    --------
+    >>> touches_by_class([Label("a.csv", 0.0, 1.0, "pin"), Label("a.csv", 5.0, 6.0, "pin"), Label("a.csv", 8.0, 9.0, "edge")])
+    {'pin': 2, 'edge': 1}
+    """
+    groups: dict[str, set[str]] = {}
+    for each, name in zip(labels, touches_of(labels)[0], strict=True):
+        groups.setdefault(each.label, set()).add(name)
+    return {label: len(names) for label, names in groups.items()}

@@ -1,8 +1,4 @@
-"""From labelled trials to a model, and how good it is on trials that it has not seen.
-
-Trials of one participant are a group each: a participant's own model is judged on trials that were held out (the ``test`` part of the
-table where it has one, else five folds). Where participants are put together, whole participants are held out.
-"""
+"""From labelled trials to a model."""
 
 from __future__ import annotations
 
@@ -13,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skinfab.errors import InputError
-from skinfab.fingertip.confusion import Confusion
 from skinfab.fingertip.nail.classify import NailModel, fit_phasors
 from skinfab.fingertip.nail.frozen import without_frozen
 from skinfab.fingertip.nail.histogram_model import HistogramModel, fit_histograms
@@ -30,11 +25,8 @@ from skinfab.fingertip.nail.phasors import (
     turned_phasors,
     turns,
 )
-from skinfab.fingertip.nail.published import modes
-from skinfab.fingertip.nail.regress import Regression, learnable, off_by, targets_of
-from skinfab.fingertip.nail.touches import touches_of
+from skinfab.fingertip.nail.touches import touches_by_class, touches_of
 from skinfab.fingertip.nail.units import CHANNELS
-from skinfab.fingertip.splits import Split, group_folds, leave_one_out
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -45,7 +37,6 @@ WINDOW = 33
 PUBLISHED_WINDOW = 1024
 #: It learns so much of the shortest trial: a single frame that is lost in as long a one would leave none to be asked about.
 _SPARED = 0.95
-FOLDS = 5
 #: Channels that are saturated in more of the readings are told of.
 _SATURATED = 0.01
 #: Fewer trials of a class are told of: with two, accuracy is 10 % lower than with five.
@@ -83,9 +74,14 @@ class Prepared:
     rate_hz: float
     notes: tuple[str, ...]
 
+    def groups(self, *, across: bool) -> list[str]:
+        """Of each trial, what is held out as a whole with it: its touch, or `across` participants its participant."""
+        labels = [each.label for each in self.trials]
+        return [each.participant for each in labels] if across else touches_of(labels)[0]
+
     def fit(self, rows: IntArray, *, across: bool = False) -> NailModel:
         """The model of some of the trials, as sure as it is right on other trials; with `across` on other participants."""
-        groups = [each.label.participant for each in self.trials] if across else _groups(self.trials)
+        groups = self.groups(across=across)
         return fit_phasors(
             self.names,
             self.classes[rows],
@@ -117,31 +113,6 @@ class Prepared:
             )
         windows = np.array([whole(self.trials[k].values)[:samples] for k in rows])
         return fit_histograms(self.names, self.classes[rows], windows, rate_hz=self.rate_hz)
-
-
-@dataclass(frozen=True, eq=False)
-class Held:
-    """How good models are on trials that were held out.
-
-    Parameters
-    ----------
-    confusion : Confusion
-    groups : tuple of n
-        Which cases are not independent of each other.
-    right : (n,) bool
-    angle_deg, place_mm, force_part : (n,) float
-        Errors of the regression against the labels, the force's as a part of it; NaN where there is none.
-    confidence : (n,) float
-        NaN without contact, and of the published method, which knows none.
-    """
-
-    confusion: Confusion
-    groups: tuple[str, ...]
-    right: NDArray[np.bool_]
-    angle_deg: FloatArray
-    place_mm: FloatArray
-    force_part: FloatArray
-    confidence: FloatArray
 
 
 def prepare(trials: Sequence[Trial], *, drive_hz: float | None = None) -> Prepared:
@@ -221,7 +192,7 @@ def _notes(trials: Sequence[Trial], names: tuple[str, ...], drive: ComplexArray)
             notes.append(
                 f"channel {name} is at the end of its range in {part:.1%} of the readings, which are left out; choose a wider range"
             )
-    touches = _touches(trials)
+    touches = touches_by_class([each.label for each in trials])
     rarest = min(touches, key=lambda name: touches[name])
     if (few := touches[rarest]) < _FEW:
         notes.append(f"class {rarest!r} has {few} {'trial' if few == 1 else 'trials'}; five a class are better by far")
@@ -230,112 +201,6 @@ def _notes(trials: Sequence[Trial], names: tuple[str, ...], drive: ComplexArray)
     return notes
 
 
-def splits_of(trials: Sequence[Trial], *, across: bool) -> list[Split]:
-    """What is learned from and what is judged.
-
-    Parameters
-    ----------
-    trials : sequence of Trial
-    across : bool
-        Hold out whole participants.
-
-    Raises
-    ------
-    InputError
-        There is too little to hold anything out.
-    """
-    if across:
-        return leave_one_out([each.label.participant for each in trials])
-    test = np.array([each.label.part == "test" for each in trials])
-    if test.any() and not test.all():
-        return [(np.flatnonzero(~test), np.flatnonzero(test))]
-    groups = _groups(trials)
-    labels = [each.label.label for each in trials]
-    touches = _touches(trials)
-    rarest = min(touches, key=lambda name: touches[name])
-    if touches[rarest] < 2:
-        raise InputError(
-            f"class {rarest!r} has a single trial, so that none can be held out to say how good the model is; record another one"
-        )
-    return group_folds(groups, k=min(FOLDS, touches[rarest]), strata=labels)
-
-
-def _touches(trials: Sequence[Trial]) -> dict[str, int]:
-    """How often each class was touched."""
-    groups: dict[str, set[str]] = {}
-    for each, name in zip(trials, _groups(trials), strict=True):
-        groups.setdefault(each.label.label, set()).add(name)
-    return {name: len(of) for name, of in groups.items()}
-
-
-def _groups(trials: Sequence[Trial]) -> list[str]:
-    """What is held out as a whole."""
-    return touches_of([each.label for each in trials])[0]
-
-
-def judge(made: Prepared, splits: Sequence[Split], *, samples: int | None = WINDOW, published: bool = False, across: bool = False) -> Held:
-    """Decide on what was held out.
-
-    Parameters
-    ----------
-    made : Prepared
-    splits : sequence of (train, test)
-    samples : int, optional
-        Readings of the window, from the trial's first; all of it where it is left out. Of the published method, which knows one length,
-        the whole trial in windows, and the mode of what is said of them.
-    published : bool
-        By the published method.
-    across : bool
-        Cases of one participant are not independent.
-    """
-    truth, said, groups = [], [], []
-    errors = []
-    names = [each.label.participant for each in made.trials] if across else _groups(made.trials)
-    for train, test in splits:
-        if published:
-            model = made.fit_published(train)
-            decided = [by_histograms(model, made.trials[k].values) for k in test]
-            estimates = np.full((len(test), 4), np.nan)
-        else:
-            decided, estimates = _by_phasors(made, train, test, samples, across)
-        truth += [made.names[made.classes[k]] for k in test]
-        said += [made.names[k] for k in decided]
-        groups += [names[k] for k in test]
-        errors.append(estimates)
-    both = np.concatenate(errors)
-    right = np.array([a == b for a, b in zip(truth, said, strict=True)])
-    return Held(Confusion.of(truth, said, made.names), tuple(groups), right, *both.T)
-
-
 def whole(values: FloatArray) -> FloatArray:
     """The rows that have all channels: a histogram does not mind what lies between them."""
     return values[np.isfinite(values).all(axis=1)]
-
-
-def by_histograms(model: HistogramModel, values: FloatArray) -> int:
-    """What most of a trial's windows say, of readings (n, 6) that have one: from the first on, gaps closed up."""
-    values = whole(values)
-    count = len(values) // model.samples
-    return int(modes(model.decide(values[: count * model.samples].reshape(count, model.samples, 6))[None])[0])
-
-
-def _by_phasors(made: Prepared, train: IntArray, test: IntArray, samples: int | None, across: bool) -> tuple[list[int], FloatArray]:
-    model = made.fit(train, across=across)
-    labels = [made.trials[k].label for k in train]
-    regression = Regression(model, learnable(targets_of(labels))[0])
-    decided, errors = [], np.full((len(test), 4), np.nan)
-    for row, k in enumerate(test):
-        trial = made.trials[k]
-        window = without_frozen(np.where(trial.saturated, np.nan, trial.values)[:samples])
-        drive, _ = turned_phasors(window[None], made.rate_hz, made.drive_hz[k], model.reference)
-        usable = model
-        if (gone := ~np.isfinite(drive[0]) & model.channels).any():
-            usable = model.without(gone)
-            drive, _ = turned_phasors(window[None], made.rate_hz, made.drive_hz[k], usable.reference)
-        own = regression if usable is model else Regression(usable, regression.targets)
-        decision = usable.decide_phasors(drive, len(window))
-        decided.append(int(decision.classes[0]))
-        target = targets_of([trial.label])[0]
-        found = own.estimate(usable.features(drive))[0]
-        errors[row] = *off_by(found, target), decision.confidence[0] if decision.contact[0] else np.nan
-    return decided, errors
