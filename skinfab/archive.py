@@ -6,7 +6,6 @@ by letter against the one header that fits: no `eval` of what it says, no pickle
 
 from __future__ import annotations
 
-import json
 import re
 import struct
 import zipfile
@@ -20,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skinfab.errors import InputError, RefusedError
+from skinfab.strict_json import strict_json
 
 #: Deflated arrays of real meshes shrink by 2 to 10; a member that claims more than this is a zip bomb.
 MAX_RATIO = 100
@@ -127,9 +127,9 @@ class Archive:
         return members
 
     def json(self, name: str) -> dict[str, Any]:
-        """A JSON object, strict: no NaN, no infinity."""
+        """A JSON object of finite numbers."""
         try:
-            data = json.loads(self._read(name, at_most=MAX_JSON_BYTES), parse_constant=_refuse_constant)
+            data = strict_json(self._read(name, at_most=MAX_JSON_BYTES))
         except (ValueError, RecursionError) as fault:  # ValueError: JSON, UTF-8 and digits alike
             raise InputError(f"{name} is not JSON ({fault})") from fault
         if not isinstance(data, dict):
@@ -193,7 +193,3 @@ def _data_start(raw: bytes, name: str, dtype: str, shape: tuple[int, ...], *, he
     if given != shape:
         raise InputError(f"{name} has shape {given}; {head} says {shape}")
     return start
-
-
-def _refuse_constant(word: str) -> float:
-    raise ValueError(f"{word} is not a number")

@@ -15,6 +15,9 @@ MAX_BYTES = 1_000_000
 #: Tables within tables; ours go three deep.
 MAX_DEPTH = 32
 
+#: What TOML promises of whole numbers: Python reads longer ones, and fails where it makes a float of them.
+MOST = 2**63
+
 
 def read_toml(source: Path | Traversable, called: object) -> dict[str, Any]:
     """The tables of a TOML file.
@@ -69,7 +72,10 @@ def parse_toml(data: bytes, called: object) -> dict[str, Any]:
         raise InputError(f"{called} is not a TOML file: {' '.join(str(fault).split())}") from fault
     level: list[Any] = [found]
     for _ in range(MAX_DEPTH):
-        level = [each for held in level for each in (held.values() if isinstance(held, dict) else held) if isinstance(each, dict | list)]
+        inside = [each for held in level for each in (held.values() if isinstance(held, dict) else held)]
+        if any(isinstance(each, int) and not -MOST <= each < MOST for each in inside):
+            raise InputError(f"{called} is not a TOML file: a whole number in it has more than 64 bits")
+        level = [each for each in inside if isinstance(each, dict | list)]
         if not level:
             return found
     raise InputError(f"{called} has tables within tables more than {MAX_DEPTH} deep; write it flatter")

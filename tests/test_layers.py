@@ -32,7 +32,8 @@ ALLOWED = {
 #: Inside skinfab, ground floor first. A room imports its own floor and those below; `skinfab/cli` is the roof.
 FLOORS = (
     ("errors", "tolerances", "__init__"),
-    ("files", "toml_file", "decimals", "linalg", "paths", "material", "progress", "staging", "archive", "spreadsheet", "rates"),
+    ("files", "toml_file", "strict_json", "decimals", "linalg", "paths", "material"),
+    ("progress", "staging", "archive", "spreadsheet", "rates"),
     ("mesh", "patterns", "electrical", "readout", "strip_fit", "strip_table"),
     ("pieces", "flatten", "fingertip"),
     ("seams", "placement", "skin"),  # edits of seams and sensors take a skin and give one

@@ -24,7 +24,7 @@ GROUND = "ground"
 #: Modules of skinfab that are one room, from the ground up; others are a room of their own name.
 TOGETHER = {
     GROUND: (
-        *("__init__", "errors", "tolerances", "files", "toml_file", "decimals", "linalg", "paths", "material", "progress"),
+        *("__init__", "errors", "tolerances", "files", "toml_file", "strict_json", "decimals", "linalg", "paths", "material", "progress"),
         *("staging", "archive", "spreadsheet", "rates"),
     ),
     "strips": ("strip_fit", "strip_table", "strip_plate"),

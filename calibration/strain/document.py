@@ -16,6 +16,7 @@ from calibration.strain.models import MODELS, BranchModel, Model, model_of
 from skinfab.errors import InputError
 from skinfab.files import atomic_write
 from skinfab.readout.bridge import relative
+from skinfab.strict_json import strict_json
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
@@ -118,7 +119,7 @@ def load_calibration(path: str | Path) -> SensorCalibration:
     try:
         if path.stat().st_size > MAX_BYTES:
             raise InputError(f"{path} has {path.stat().st_size / 1e6:.0f} MB and is no calibration; give the calibration.json of a sensor")
-        content = json.loads(path.read_text(encoding="utf-8"))
+        content = strict_json(path.read_text(encoding="utf-8"))
     except OSError as fault:
         raise InputError(f"{path}: {fault.strerror or fault}; give the calibration.json that skinfab calibrate wrote") from fault
     except (ValueError, RecursionError) as fault:  # ValueError: JSON, UTF-8 and digits alike

@@ -6,6 +6,7 @@ The suffix is ``.npz`` by custom: numpy opens the arrays, any zip tool the JSON.
 from __future__ import annotations
 
 import json
+import math
 import zipfile
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -150,7 +151,7 @@ def _read(archive: Archive, kinds: tuple[str, ...], newest: int) -> Saved:
     for name, (dtype, shape) in shapes.items():
         if dtype not in ("<f8", "<i8"):
             raise InputError(f"{name} is said to be of dtype {dtype!r}; only plain numbers are read")
-        if np.prod([float(n) for n in shape]) > MAX_NUMBERS:
+        if math.prod(float(n) for n in shape) > MAX_NUMBERS:
             raise InputError(f"{name} is said to have shape {shape}; no model is that large")
         arrays[name] = archive.array(name, dtype, shape)
     return Saved(kind, version, facts, arrays)

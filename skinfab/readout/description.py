@@ -8,6 +8,7 @@ from typing import Any
 
 from skinfab.errors import InputError
 from skinfab.readout.frame import Channel, Stream
+from skinfab.strict_json import strict_json
 
 SCHEMA = 1
 
@@ -52,7 +53,7 @@ def stream_of_json(text: str | bytes) -> Stream:
         It is no such description, of a newer schema, or a part of it is missing or of the wrong kind.
     """
     try:
-        content = json.loads(text)
+        content = strict_json(text)
     except (ValueError, RecursionError) as fault:
         raise InputError(f"the description of the stream is no JSON ({fault}); the file is damaged") from fault
     if not isinstance(content, dict) or "schema" not in content:

@@ -41,8 +41,13 @@ def _server() -> subprocess.Popen[str]:
     command = [sys.executable, "-P", "-c", _SERVER]
     environment = os.environ | {"PYTHONPATH": str(ROOT)}
     server = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, env=environment)
-    atexit.register(server.kill)
+    atexit.register(_stop, server)
     return server
+
+
+def _stop(server: subprocess.Popen[str]) -> None:
+    server.kill()
+    server.communicate()
 
 
 def run(command: list[str], **_: object) -> subprocess.CompletedProcess[bytes]:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import io
 import math
+import re
 import subprocess
 import zipfile
 from collections.abc import Callable
@@ -30,10 +31,17 @@ from gcode.words import read_text
 from skinfab.batch.plan import read_plan
 from skinfab.document import load_skin
 from skinfab.errors import InputError, RefusedError
+from skinfab.fingertip.array.learn import load_array
+from skinfab.fingertip.force.gravity_model import load_hand
 from skinfab.fingertip.force.labels import with_labels
+from skinfab.fingertip.force.liquid_model import load_liquid
 from skinfab.fingertip.force.motion_file import read_events
-from skinfab.fingertip.force.touch_model import read_places
+from skinfab.fingertip.force.shape import ShapeModel
+from skinfab.fingertip.force.texture_model import load_texture
+from skinfab.fingertip.force.touch_model import load_touches, read_places
 from skinfab.fingertip.nail.labels import read_labels
+from skinfab.fingertip.nail.model_file import load_nail
+from skinfab.fingertip.optical.model_file import load_edge
 from skinfab.fingertip.optical.picture import read_picture
 from skinfab.fingertip.optical.targets import read_targets
 from skinfab.fingertip.saved import load_model
@@ -114,11 +122,16 @@ def _skin(path: Path) -> None:
 
 def _skin_json(path: Path) -> None:
     """The document's text alone is broken, and may become longer or shorter."""
-    document = path.with_suffix(".skin")
-    with zipfile.ZipFile(io.BytesIO(seeds.document())) as whole, zipfile.ZipFile(document, "w") as made:
+    _skin(_with_text(path, seeds.document(), "skin.json"))
+
+
+def _with_text(path: Path, archive: bytes, text: str) -> Path:
+    """This archive with the file as its text."""
+    document = path.with_suffix(".zip")
+    with zipfile.ZipFile(io.BytesIO(archive)) as whole, zipfile.ZipFile(document, "w") as made:
         for name in whole.namelist():
-            made.writestr(name, path.read_bytes() if name == "skin.json" else whole.read(name))
-    _skin(document)
+            made.writestr(name, path.read_bytes() if name == text else whole.read(name))
+    return document
 
 
 @cache
@@ -200,6 +213,27 @@ def _model(path: Path) -> None:
         assert all(np.isfinite(array).all() for array in load_model(path, kind="nail").arrays.values())
 
 
+#: What reads a model, by its kind.
+_LOADERS: dict[str, Callable[[Path], object]] = {
+    "force contact": load_touches,
+    "force hand": load_hand,
+    "force texture": load_texture,
+    "force shape": lambda path: ShapeModel.load(path).limits,
+    "force liquid": load_liquid,
+    "nail phasors": load_nail,
+    "optical edge": load_edge,
+    "tactel array": load_array,
+}
+
+
+def _fingertip(path: Path) -> None:
+    """The text of a model, of the kind that it says; what it says of itself is broken, and its arrays are not."""
+    said = re.search(rb'"kind": "([\w ]+)"', path.read_bytes())
+    kind = said[1].decode() if said else ""
+    kind = kind if kind in _LOADERS else "force liquid"
+    _LOADERS[kind](_with_text(path, seeds.fingertips()[kind], "model.json"))
+
+
 def _calibration(path: Path) -> None:
     assert math.isfinite(load_calibration(path).u0)
 
@@ -242,6 +276,7 @@ PARSERS: dict[str, Parser] = {
     "skin": Parser(_skin, seeds.documents, ".skin"),
     "skin-json": Parser(_skin_json, seeds.document_texts, ".json"),
     "model": Parser(_model, seeds.models, ".model"),
+    "fingertip-json": Parser(_fingertip, seeds.fingertip_texts, ".json"),
     "gcode": Parser(_gcode, seeds.programs, ".gcode"),
     "printer": Parser(_printer, seeds.profiles, ".toml"),
     "material": Parser(_material, seeds.materials, ".toml"),

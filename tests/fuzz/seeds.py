@@ -244,3 +244,60 @@ def places() -> list[bytes]:
 
 def force_labels() -> list[bytes]:
     return [b'# by hand\nlog;label;group\na.csv;felt;1\nb.csv;"wool; raw";2\n']
+
+
+@cache
+def fingertips() -> dict[str, bytes]:
+    """The smallest models of each kind."""
+    from skinfab.fingertip.array.geometry import Geometry
+    from skinfab.fingertip.array.learn import KIND as ARRAY
+    from skinfab.fingertip.array.learn import save_array
+    from skinfab.fingertip.array.matched import ArrayModel
+    from skinfab.fingertip.array.simulator import Rubber
+    from skinfab.fingertip.force.shape import KIND as SHAPE
+    from skinfab.fingertip.force.shape import SHAPES, VERSION
+    from skinfab.fingertip.force.texture_model import FEATURES
+    from skinfab.fingertip.saved import save_model
+
+    rng = np.random.default_rng(1)
+    ones, bands, made = np.ones, len(FEATURES["bands"][1]), {"simulated": True, "made_from": []}
+    liquid = {"false_alarm": 0.05, "seconds": 4.0, "rate_hz": 100.0, "pieces": 3, **made}
+    texture = {"features": "bands", "n_fft": 256, "rate_hz": 500.0, "names": ["felt", "silk"], **made}
+    texture["lengths"] = [{"samples": 256, "far": 9.5, "right": 0.9}]
+    nail = {"names": ["none", "edge", "dot"], "rate_hz": 1000.0, "drive_hz": 200.0, "shrinkage": 0.1, "temperature": 1.0, "made_from": {}}
+    optical = {"shape": [48, 64], "level": 128, "gamma": 0.5, "ridge": 0.1, "made_from": {}}
+    trials = {"drive_real": (4, 6), "drive_imag": (4, 6), "noise": (6,), "targets": (4, 5)}
+    edge = {"rest": (12, 2), "mean": (24,), "basis": (24, 2), "support": (5, 2), "weights": (5, 3), "centre": (3,), "spacing": (5,)}
+    models = {
+        "force contact": ({"surface": "fingertip", **made}, {"matrix": np.eye(6), "spread": np.eye(36), "noise": ones(2)}),
+        "force hand": ({"weighings": 4, **made}, {"offset": ones(6), "weight": ones(1), "moment": ones(3), "covariance": np.eye(10)}),
+        "force texture": (texture, {"centre": ones(bands), "scale": ones(bands), "means": ones((2, bands)), "precision": np.eye(bands)}),
+        SHAPE: (
+            {"features": "pose-free", "shapes": list(SHAPES), "misfit_limit": 2.5, **made},
+            {"mean": ones(2), "scale": ones(2), "hidden": ones((3, 4)), "output": ones((5, len(SHAPES)))},
+        ),
+        "force liquid": (liquid, {"limit": ones(1) / 2}),
+        "nail phasors": (
+            nail,
+            {name: rng.normal(size=shape) for name, shape in trials.items()}
+            | {"classes": np.array([0, 1, 2, 1]), "channels": ones(6, dtype=int), "targets_known": ones((4, 5), dtype=int)},
+        ),
+        "optical edge": (optical, {name: ones(shape) for name, shape in edge.items()} | {"wrong": ones(5) / 2, "usual": ones(3)}),
+    }
+    files = {}
+    with tempfile.TemporaryDirectory() as folder:
+        for kind, (facts, arrays) in models.items():
+            save_model(path := Path(folder, "a.model"), kind=kind, version=VERSION if kind == SHAPE else 1, facts=facts, arrays=arrays)
+            files[kind] = path.read_bytes()
+        geometry = Geometry()
+        save_array(path, ArrayModel(geometry, Rubber(), ones(geometry.shape)), made)
+        files[ARRAY] = path.read_bytes()
+    return files
+
+
+def fingertip_texts() -> list[bytes]:
+    texts = []
+    for file in fingertips().values():
+        with zipfile.ZipFile(io.BytesIO(file)) as whole:
+            texts.append(whole.read("model.json"))
+    return texts

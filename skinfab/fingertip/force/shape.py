@@ -153,15 +153,16 @@ class ShapeModel:
         saved = load_model(path, kind=KIND, version=VERSION)
         facts = dict(saved.facts)
         try:
-            features, shapes = facts.pop("features"), facts.pop("shapes")
-            network = Network(*(saved.arrays[name] for name in ("mean", "scale", "hidden", "output")))
-        except (KeyError, AttributeError, TypeError, ValueError) as fault:
+            features, shapes = str(facts.pop("features")), facts.pop("shapes")
+            model = cls(features, Network(*(saved.arrays[name] for name in ("mean", "scale", "hidden", "output"))), facts)
+            limits = model.limits
+        except (KeyError, TypeError, ValueError) as fault:
             raise InputError(f"{path} lacks a part of a model of shapes ({fault}); train it again") from fault
-        if (limits := facts.get("misfit_limits")) is not None and not (isinstance(limits, list) and len(limits) == len(SHAPES) + 1):
-            raise InputError(f"{path}: its limits of the misfit are {limits}, which are none; train it again")
-        if features not in FEATURES or shapes != list(SHAPES) or network.output.shape[1] != len(SHAPES):
+        if limits.shape != (len(SHAPES) + 1,) or not (limits > 0).all():
+            raise InputError(f"{path}: its limits of the misfit are {limits.tolist()}, which are none; train it again")
+        if features not in FEATURES or shapes != list(SHAPES) or model.network.output.shape[1] != len(SHAPES):
             raise InputError(f"{path} is a model of {shapes} by {features!r} features, which are not known here; train it again")
-        return cls(features, network, facts)
+        return model
 
 
 def features_of(found: Sequence[Touches], features: str) -> FloatArray:
