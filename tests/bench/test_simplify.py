@@ -13,7 +13,7 @@ from skinfab.flatten.disk import flatten_isometric
 from skinfab.flatten.distortion import measure
 from skinfab.flatten.simplified import SHARE
 
-DISK = bumpy_cap(6000)
+DISK = bumpy_cap(3000)
 
 
 def row(share: int, seconds: float, mean_d: float, *, carried: bool = True, effect: float = 1e-4) -> dict[str, object]:
@@ -51,7 +51,7 @@ def test_the_shares_take_turns_and_the_least_time_counts(monkeypatch: pytest.Mon
 
 def test_run_writes_a_table_a_chart_and_a_sentence_from_the_table(tmp_path: Path) -> None:
     seen: list[float] = []
-    found = run(tmp_path, sizes=[300, 6000], repeats=1, progress=lambda fraction, label: seen.append(fraction))
+    found = run(tmp_path, sizes=[300, 3000], repeats=1, progress=lambda fraction, label: seen.append(fraction))
     assert sorted(p.name for p in tmp_path.iterdir()) == ["simplify.csv", "simplify.png", "simplify.txt"]
     table = read_csv(tmp_path / "simplify.csv")
     assert (tmp_path / "simplify.txt").read_text().splitlines() == [sentence(table), *found["notes"]]

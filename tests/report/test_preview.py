@@ -26,6 +26,12 @@ def preview(skin: Skin, distortions: list[Distortion], folder: Path) -> np.ndarr
     return imread(io.BytesIO((folder / "preview.png").read_bytes()))[..., :3]
 
 
+@pytest.fixture
+def drawn_small(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where it is enough that it can be drawn."""
+    monkeypatch.setattr("skinfab.report.preview._DPI", 40)
+
+
 def near(image: np.ndarray, colour: tuple[float, ...] | np.ndarray, tolerance: float = 0.02) -> np.ndarray:
     return (np.abs(image - np.asarray(colour)) < tolerance).all(axis=-1)
 
@@ -54,10 +60,12 @@ def test_heat_map_keeps_its_scale(d: float, colour: tuple[float, ...], skin: Ski
 
 
 @pytest.mark.parametrize("file", ["$x_{1}$.obj", "指.obj", "a<b>&\\.obj", "x" * 200 + ".obj"])
+@pytest.mark.usefixtures("drawn_small")
 def test_strange_names_are_drawn_as_text(file: str, skin: Skin, distortions: list[Distortion], tmp_path: Path) -> None:
     preview(dataclasses.replace(skin, source=Source(file, "ab" * 32, "mm", 1.0)), distortions, tmp_path)
 
 
+@pytest.mark.usefixtures("drawn_small")
 def test_many_pieces_and_no_sensors(skin: Skin, distortions: list[Distortion], tmp_path: Path) -> None:
     many = tuple(dataclasses.replace(skin.pieces[0], id=f"P{k}") for k in range(14))
     preview(dataclasses.replace(skin, pieces=many, sensors=()), distortions * 14, tmp_path)

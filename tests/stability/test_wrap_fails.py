@@ -18,10 +18,10 @@ LEAP = ROOT / "../shared/meshes/leap_fingertip.obj"
 
 
 def housing() -> trimesh.Trimesh:
-    """A hollow box of 50 x 36 x 30 mm, walls 2 mm thick, with eight screw holes of 3 mm and a slot of 2 mm: inside and out one surface."""
+    """A hollow box of 50 x 36 x 30 mm, walls 2 mm thick, with four screw holes of 3 mm and a slot of 2 mm: inside and out one surface."""
     part = trimesh.creation.box((50, 36, 30))
-    holes = [trimesh.creation.cylinder(radius=1.5, height=60, sections=16) for _ in range(4)]
-    for hole, (x, y) in zip(holes, [(-18, -12), (-18, 12), (18, -12), (18, 12)], strict=True):
+    holes = [trimesh.creation.cylinder(radius=1.5, height=60, sections=16) for _ in range(2)]
+    for hole, (x, y) in zip(holes, [(-18, -12), (18, 12)], strict=True):
         hole.apply_translation((x, y, 0))
     slot = trimesh.creation.box((30, 60, 2))
     return trimesh.boolean.difference([part, trimesh.creation.box((46, 32, 26)), *holes, slot])
