@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import argparse
-import json
 from pathlib import Path
 
 from skinfab.cli import steps
+from skinfab.cli.measured import measured
 
 
 def add_options(p: argparse.ArgumentParser) -> None:
@@ -20,17 +20,5 @@ def add_options(p: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Measure, write, and say what came out."""
     from skinfab.bench.array import run as bench
-    from skinfab.progress import terminal_progress
-    from skinfab.staging import staged_folder
 
-    with staged_folder(args.output) as folder:
-        with terminal_progress(quiet=args.json) as progress:
-            found = bench(folder, repeats=args.repeats, progress=progress)
-        files = [str(args.output / file.name) for file in sorted(folder.iterdir())]
-    if args.json:
-        print(json.dumps({"simulated": True, "files": files, **found}, allow_nan=False))
-        return 0
-    print(found["sentence"])
-    steps.say(found["notes"])
-    print("wrote " + ", ".join(files))
-    return 0
+    return measured(args, lambda folder, progress: bench(folder, repeats=args.repeats, progress=progress), simulated=True)

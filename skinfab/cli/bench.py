@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import argparse
 import importlib
-import json
 from pathlib import Path
+from typing import Any
 
 from skinfab.cli import steps
+from skinfab.cli.measured import measured
 
 #: What can be measured.
 NAMES = {
@@ -63,13 +64,6 @@ def sizes(text: str) -> list[int]:
     return sorted({int(word) for word in words})
 
 
-def repeats(text: str) -> int:
-    """A whole number from 1 up, for argparse."""
-    if not (text.isascii() and text.isdecimal() and int(text) > 0):
-        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number from 1 up")
-    return int(text)
-
-
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Add the command and its options."""
     p = subparsers.add_parser(
@@ -91,15 +85,14 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     p.add_argument(
         "--meshes", metavar="FILE", type=Path, nargs="+", default=[], help="segment: find seams on these too (default: the project's own)"
     )
-    p.add_argument("--repeats", metavar="K", type=repeats, default=3, help="the least time of K counts (default: 3)")
+    p.add_argument("--repeats", metavar="K", type=steps.counting, default=3, help="the least time of K counts (default: 3)")
     p.add_argument("--json", action="store_true", help="print one JSON object and nothing else")
     p.set_defaults(run=run, wrong_usage=p.error)
 
 
 def run(args: argparse.Namespace) -> int:
     """Measure, write, and say what came out."""
-    from skinfab.progress import part_of, terminal_progress
-    from skinfab.staging import staged_folder
+    from skinfab.progress import Progress, part_of
 
     wanted = list(dict.fromkeys(args.names or NAMES))
     if args.sizes and not any(MODULES[key][1] for key in wanted):
@@ -110,21 +103,15 @@ def run(args: argparse.Namespace) -> int:
         from skinfab.bench.segment import mesh_files
 
         mesh_files(args.meshes)  # none: that is told now, not after minutes
-    found = {}
-    with staged_folder(args.output) as folder:
-        with terminal_progress(quiet=args.json) as progress:
-            for k, key in enumerate(wanted):
-                part = part_of(progress, k / len(wanted), (k + 1) / len(wanted))
-                module, sized = MODULES[key]
-                options = {"sizes": args.sizes} if sized and args.sizes else {}
-                options |= {"meshes": args.meshes} if key == "segment" and args.meshes else {}
-                found[key] = importlib.import_module(module).run(folder, repeats=args.repeats, progress=part, **options)
-        written = [str(args.output / file.name) for file in sorted(folder.iterdir())]
-    if args.json:
-        print(json.dumps({"files": written, **found}, allow_nan=False))
-        return 0
-    for result in found.values():
-        print(result["sentence"])
-        steps.say(result["notes"])
-    print("wrote " + ", ".join(written))
-    return 0
+
+    def measure(folder: Path, progress: Progress) -> dict[str, Any]:
+        found = {}
+        for k, key in enumerate(wanted):
+            part = part_of(progress, k / len(wanted), (k + 1) / len(wanted))
+            module, sized = MODULES[key]
+            options = {"sizes": args.sizes} if sized and args.sizes else {}
+            options |= {"meshes": args.meshes} if key == "segment" and args.meshes else {}
+            found[key] = importlib.import_module(module).run(folder, repeats=args.repeats, progress=part, **options)
+        return found
+
+    return measured(args, measure, several=True)

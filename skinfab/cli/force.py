@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import argparse
 import importlib
-import json
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 from skinfab.cli import steps
-from skinfab.cli.bench import repeats
+from skinfab.cli.measured import measured
 
 #: What is done with the sensor's readings; `skinfab/cli/force_NAME.py` adds its own parsers to the verbs it has.
 TOPICS = ("contact", "shape", "texture", "gravity", "liquid")
@@ -66,7 +66,9 @@ def finish(p: argparse.ArgumentParser, run: object) -> None:
 
 def _add_bench(p: argparse.ArgumentParser) -> None:
     p.add_argument("topics", metavar="TOPIC", nargs="*", type=_topic, help=f"what to measure: {', '.join(BENCHES)} (default: everything)")
-    p.add_argument("--repeats", metavar="K", type=repeats, default=3, help="of what is timed; the least time of K counts (default: 3)")
+    p.add_argument(
+        "--repeats", metavar="K", type=steps.counting, default=3, help="of what is timed; the least time of K counts (default: 3)"
+    )
     add_output(p, "tables, charts and sentences")
     finish(p, run_bench)
 
@@ -79,22 +81,15 @@ def _topic(text: str) -> str:
 
 def run_bench(args: argparse.Namespace) -> int:
     """Measure, write, and say what came out."""
-    from skinfab.progress import part_of, terminal_progress
-    from skinfab.staging import staged_folder
+    from skinfab.progress import Progress, part_of
 
     wanted = list(dict.fromkeys(args.topics or BENCHES))
-    found = {}
-    with staged_folder(args.output) as folder:
-        with terminal_progress(quiet=args.json) as progress:
-            for k, topic in enumerate(wanted):
-                part = part_of(progress, k / len(wanted), (k + 1) / len(wanted))
-                found[topic] = importlib.import_module(BENCHES[topic]).run(folder, repeats=args.repeats, progress=part)
-        written = [str(args.output / file.name) for file in sorted(folder.iterdir())]
-    if args.json:
-        print(json.dumps({"files": written, "simulated": True, **found}, allow_nan=False))
-        return 0
-    for result in found.values():
-        print(result["sentence"])
-        steps.say(result["notes"])
-    print("wrote " + ", ".join(written))
-    return 0
+
+    def measure(folder: Path, progress: Progress) -> dict[str, Any]:
+        found = {}
+        for k, topic in enumerate(wanted):
+            part = part_of(progress, k / len(wanted), (k + 1) / len(wanted))
+            found[topic] = importlib.import_module(BENCHES[topic]).run(folder, repeats=args.repeats, progress=part)
+        return found
+
+    return measured(args, measure, several=True, simulated=True)

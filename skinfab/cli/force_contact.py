@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from skinfab.cli import steps
-from skinfab.cli.bench import repeats
 from skinfab.cli.force_contact_result import facts_of, lines_of, write
 from skinfab.cli.force_result import told_as_json
 from skinfab.cli.record import baud
@@ -43,8 +42,8 @@ def add_parsers(topics: Mapping[str, argparse._SubParsersAction[argparse.Argumen
         "--tip", metavar="MESH", type=Path, help="instead of a dome: a closed mesh of the fingertip in the sensor's frame, mm"
     )
     p = topics["simulate"].add_parser("contact", help="grasps that slide, let go and roll, and the times when they do")
-    p.add_argument("--grasps", metavar="N", type=repeats, default=6, help="logs, a grasp each (default: 6)")
-    p.add_argument("--touches", metavar="N", type=repeats, help="instead of grasps: logs of a touch each at known places, for train")
+    p.add_argument("--grasps", metavar="N", type=steps.counting, default=6, help="logs, a grasp each (default: 6)")
+    p.add_argument("--touches", metavar="N", type=steps.counting, help="instead of grasps: logs of a touch each at known places, for train")
     p.add_argument("--crooked", action="store_true", help="of grasps: by the sensor that --touches of this seed are read by, which is off")
     p.add_argument("--seed", type=steps.seed, default=0, help="of all chance (default: 0)")
     add_output(p, "a log a grasp, and truth.csv; or a log a touch, and places.csv")

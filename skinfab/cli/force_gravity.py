@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from skinfab.cli import steps
-from skinfab.cli.bench import repeats
 from skinfab.cli.force_result import result_folder, told_as_json
 
 if TYPE_CHECKING:
@@ -50,12 +49,12 @@ def add_parsers(topics: Mapping[str, argparse._SubParsersAction[argparse.Argumen
     from skinfab.cli.force import add_output, finish
 
     p = topics["simulate"].add_parser("gravity", help="a ball held by four fingers at the paper's five places, in ten poses")
-    p.add_argument("--poses", metavar="N", type=repeats, default=10, help="of the hand (default: 10)")
+    p.add_argument("--poses", metavar="N", type=steps.counting, default=10, help="of the hand (default: 10)")
     p.add_argument("--span", metavar="DEG", type=steps.positive, default=45.0, help="the hand is turned by up to so much (default: 45)")
     p.add_argument(
         "--weighings",
         metavar="N",
-        type=repeats,
+        type=steps.counting,
         default=0,
         help="weigh each hand empty too, so many times (default: none)",
     )
@@ -130,7 +129,8 @@ def train(args: argparse.Namespace) -> int:
     import numpy as np
 
     from skinfab.files import require_apart
-    from skinfab.fingertip.force.gravity_model import left_over, save_hand
+    from skinfab.fingertip.force.gravity_fit import left_over
+    from skinfab.fingertip.force.gravity_model import save_hand
     from skinfab.fingertip.force.logs import once
     from skinfab.fingertip.force.weighings import learn_alike
 

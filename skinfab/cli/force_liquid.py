@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from skinfab.cli import steps
-from skinfab.cli.bench import repeats
 from skinfab.cli.force_result import result_folder, told_as_json
 
 if TYPE_CHECKING:
@@ -36,7 +35,7 @@ def add_parsers(topics: Mapping[str, argparse._SubParsersAction[argparse.Argumen
     from skinfab.cli.force import add_output, finish
 
     p = topics["simulate"].add_parser("liquid", help="cups with and without water, stirred and then held still")
-    p.add_argument("--trials", metavar="N", type=repeats, default=2, help="of each cup and way to stir (default: 2)")
+    p.add_argument("--trials", metavar="N", type=steps.counting, default=2, help="of each cup and way to stir (default: 2)")
     p.add_argument("--seed", type=steps.seed, default=0, help="of all chance (default: 0)")
     p.add_argument("--seconds", metavar="S", type=_lasting, default=6.0, help="that a log lasts (default: 6)")
     add_output(p, "a log a trial")

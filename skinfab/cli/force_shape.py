@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from skinfab.cli import steps
-from skinfab.cli.bench import repeats
 from skinfab.cli.force_result import result_folder, told_as_json
 
 if TYPE_CHECKING:
@@ -30,7 +29,7 @@ def add_parsers(topics: Mapping[str, argparse._SubParsersAction[argparse.Argumen
     from skinfab.cli.force import add_output, finish
 
     p = topics["simulate"].add_parser("shape", help="grasps of spheres, cylinders and cuboids by a four-fingered hand")
-    p.add_argument("--grasps", metavar="N", type=repeats, default=15, help="of each object (default: 15)")
+    p.add_argument("--grasps", metavar="N", type=steps.counting, default=15, help="of each object (default: 15)")
     p.add_argument("--seed", type=steps.seed, default=0, help="of all chance (default: 0)")
     add_output(p, "grasps.csv (six objects to learn from), new.csv (three others) and held.csv (the paper's three, in ten poses)")
     finish(p, simulate)

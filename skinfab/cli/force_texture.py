@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from skinfab.cli import steps
-from skinfab.cli.bench import repeats
 from skinfab.cli.force_result import result_folder, told_as_json
 
 if TYPE_CHECKING:
@@ -29,8 +28,8 @@ def add_parsers(topics: Mapping[str, argparse._SubParsersAction[argparse.Argumen
     from skinfab.cli.force import add_output, finish
 
     p = topics["simulate"].add_parser("texture", help="slides over the paper's six materials")
-    p.add_argument("--specimens", metavar="N", type=repeats, default=6, help="of each material (default: 6)")
-    p.add_argument("--slides", metavar="N", type=repeats, default=6, help="over each specimen (default: 6)")
+    p.add_argument("--specimens", metavar="N", type=steps.counting, default=6, help="of each material (default: 6)")
+    p.add_argument("--slides", metavar="N", type=steps.counting, default=6, help="over each specimen (default: 6)")
     p.add_argument("--seed", type=steps.seed, default=0, help="of all chance (default: 0)")
     add_output(p, "a log a slide")
     finish(p, simulate)

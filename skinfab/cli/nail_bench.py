@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import argparse
-import json
 from pathlib import Path
 
 from skinfab.cli import steps
+from skinfab.cli.measured import measured
 
 
 def add_options(p: argparse.ArgumentParser) -> None:
@@ -27,18 +27,6 @@ def run(args: argparse.Namespace) -> int:
         args.wrong_usage(f"--participants {args.participants}: conditions cannot be compared on fewer than 3")
     from skinfab.bench.nail import run as bench
     from skinfab.fingertip.nail.protocol import Protocol
-    from skinfab.progress import terminal_progress
-    from skinfab.staging import staged_folder
 
     protocol = Protocol(args.participants, args.training, args.rounds, args.estimates)
-    with staged_folder(args.output) as folder:
-        with terminal_progress(quiet=args.json) as progress:
-            found = bench(folder, protocol=protocol, seed=args.seed, progress=progress)
-        files = [str(args.output / file.name) for file in sorted(folder.iterdir())]
-    if args.json:
-        print(json.dumps({"files": files, **found}, allow_nan=False))
-        return 0
-    print(found["sentence"])
-    steps.say(found["notes"])
-    print("wrote " + ", ".join(files))
-    return 0
+    return measured(args, lambda folder, progress: bench(folder, protocol=protocol, seed=args.seed, progress=progress))
