@@ -23,6 +23,7 @@ from skinfab.mould import can_be_cast, skin_moulds, write_mould
 from skinfab.placement.bare import bare_pieces
 from skinfab.placement.check import validate
 from skinfab.progress import Progress, part_of, silent
+from skinfab.seams.enclosed import enclosed_words
 from skinfab.skin import Skin
 from skinfab.staging import staged_folder
 
@@ -109,7 +110,7 @@ def export_everything(*, skin: Skin, folder: Path, progress: Progress = silent) 
     validate(skin, used.material)
     named = replace(skin, printer=used.printer_name, material=used.material_name)
     with staged_folder(folder) as stage:
-        report = write_all(named, stage, used, notes=_bare(skin, used), progress=progress)
+        report = write_all(named, stage, used, notes=_said_of(skin, used), progress=progress)
         files = sorted(str(path.relative_to(stage)) for path in stage.rglob("*") if path.is_file())
     return Exported(tuple(folder / name for name in files), tuple(report["warnings"]))
 
@@ -145,17 +146,17 @@ def export_report(*, skin: Skin, path: Path, progress: Progress = silent) -> Exp
         with TemporaryDirectory(prefix=".skinfab-", dir=path.parent) as place:
             made = Path(place) / "made"
             made.mkdir()
-            report = write_all(skin, made, used, notes=_bare(skin, used), progress=part_of(progress, 0.0, 0.95))
+            report = write_all(skin, made, used, notes=_said_of(skin, used), progress=part_of(progress, 0.0, 0.95))
             (made / "report.html").replace(path)
     except OSError as fault:
         raise InputError(explain_os_error(fault, path)) from fault
     return Exported((path,), tuple(report["warnings"]))
 
 
-def _bare(skin: Skin, used: Used) -> list[str]:
-    """What `skinfab make` says of the pieces that have no sensor."""
+def _said_of(skin: Skin, used: Used) -> list[str]:
+    """What `skinfab make` says of pieces that locked seams close in, and of those that have no sensor."""
     roomy, _ = with_room_for_nozzle(used.material, used.printer)
-    return bare_pieces(skin, roomy)
+    return [*enclosed_words(skin, used.material.neck), *bare_pieces(skin, roomy)]
 
 
 def _told(folder: Path, names: list[str], notes: list[str]) -> Exported:

@@ -30,13 +30,3 @@ def many_pieces(skin: Skin, *, wrapped: bool) -> list[str]:
         f"{apart}; if its inner walls or screw holes are among them, --wrap 8 skins the "
         "outside alone, as far as a fingertip gets (docs/wrapping.md)"
     ]
-
-
-def enclosed_words(skin: Skin, neck: float) -> list[str]:
-    """What to do about pieces narrower than `neck` (mm) that locked seams part off all round: a sentence, or none."""
-    from skinfab.seams.enclosed import enclosed_text
-    from skinfab.seams.rules import edge_mask
-
-    if skin.marks is None:
-        return []
-    return [text for text, _ in enclosed_text(skin.mesh, skin.pieces, edge_mask(skin.mesh, skin.marks.locked), neck)]

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from skinfab.cli import steps
-from skinfab.cli.advice import enclosed_words, many_pieces
+from skinfab.cli.advice import many_pieces
 from skinfab.cli.alike import alike
 
 if TYPE_CHECKING:
@@ -123,6 +123,7 @@ def _document(args: argparse.Namespace, watch: Stopwatch, progress: Progress) ->
     """Read a skin document, for the printer it names or another."""
     from skinfab.document import load_skin
     from skinfab.flatten.distortion import measure
+    from skinfab.seams.enclosed import enclosed_words
 
     progress(0.0, "reading")
     with watch.phase("load"):

@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 from skinfab.mesh.model import Mesh
 from skinfab.pieces import Piece
 from skinfab.seams.naming import named_edges
+from skinfab.seams.rules import edge_mask
+from skinfab.skin import Skin
 
 
 def enclosed_pieces(mesh: Mesh, pieces: Sequence[Piece], locked: NDArray[np.bool_], width: float) -> list[Piece]:
@@ -52,6 +54,13 @@ def enclosed_text(mesh: Mesh, pieces: Sequence[Piece], locked: NDArray[np.bool_]
     who, along = (f"{who} and {others} more are", f"{first.id}: {along}") if others else (f"{who} is", along)
     why = f"narrower than the {width:g} mm that survive handling and parted off all round by locked seams ({along})"
     return [(f"{who} {why}; unlock some of them", first)]
+
+
+def enclosed_words(skin: Skin, width: float) -> list[str]:
+    """As `enclosed_text`, of the pieces and the locked seams of a document."""
+    if skin.marks is None:
+        return []
+    return [text for text, _ in enclosed_text(skin.mesh, skin.pieces, edge_mask(skin.mesh, skin.marks.locked), width)]
 
 
 def _border(mesh: Mesh, piece: Piece) -> NDArray[np.int64]:

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from skinfab.cli.advice import enclosed_words, many_pieces
+from skinfab.cli.advice import many_pieces
 from skinfab.document import load_skin
 from skinfab.seams.edit import lock
 
@@ -32,11 +32,3 @@ def test_locks_are_blamed_where_they_part_it(cut_once: Callable[[str, Path], Pat
     assert "--wrap 8" in many_pieces(few, wrapped=False)[0]
     (said,) = many_pieces(all_of_them, wrapped=False)
     assert "locked seams part it" in said and "--wrap" not in said
-
-
-def test_only_locks_close_small_pieces_in(cut_once: Callable[[str, Path], Path], tmp_path: Path) -> None:
-    """The dodecahedron's own net, every seam of it locked, and a neck as wide as the whole of it."""
-    skin = load_skin(cut_once("dodecahedron", tmp_path / "a.skin"))
-    locked = lock(skin, skin.mesh.topology.edge_ids(skin.seams))
-    assert len(skin.pieces) == 1 and enclosed_words(skin, 1000) == enclosed_words(locked, 1000) == []
-    assert enclosed_words(lock(skin, np.arange(len(skin.mesh.topology.E))), 1000) == []

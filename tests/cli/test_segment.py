@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from gcode.export import export_report
 from skinfab.cli.main import main
 from skinfab.document import load_skin, save_skin
 from skinfab.seams.edit import forbid, lock
@@ -197,7 +198,9 @@ def test_marks_that_contradict_each_other_are_refused(tmp_path: Path, capsys: py
     assert f"{a}-{b}: locked" in capsys.readouterr().err and not (tmp_path / "b.skin").exists()
 
 
-def test_pieces_too_small_to_handle_behind_locks_are_told_by_segment_and_make(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_pieces_too_small_to_handle_behind_locks_are_told_wherever_they_are_made(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     """A corner of the cube, 2 mm across each face, that locked seams part from the rest."""
     document, out = tmp_path / "a.skin", tmp_path / "out"
     V = np.array([[0, 0, 0], [2, 0, 0], [0, 2, 0], [0, 0, 2], [30, 0, 0], [0, 30, 0], [0, 0, 30.0]])
@@ -216,6 +219,7 @@ def test_pieces_too_small_to_handle_behind_locks_are_told_by_segment_and_make(tm
     assert main(["make", str(document), "-o", str(out)]) == 0
     assert json.loads((out / "report.json").read_text())["warnings"].count(told) == 1
     assert capsys.readouterr().err.count(told) == 1
+    assert export_report(skin=load_skin(document), path=tmp_path / "r.html").notes.count(told) == 1
 
 
 def test_simplest_pieces(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

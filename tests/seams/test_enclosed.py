@@ -1,5 +1,7 @@
 """Small pieces that locked seams part off are named; those that the search parts off, and those that can be handled, are not."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from shapes import grid
@@ -8,7 +10,7 @@ from skinfab.errors import InputError
 from skinfab.mesh.model import Mesh
 from skinfab.seams.auto import Aim, find_seams
 from skinfab.seams.edit import lock
-from skinfab.seams.enclosed import enclosed_pieces
+from skinfab.seams.enclosed import enclosed_pieces, enclosed_words
 from skinfab.seams.judge import Limits
 from skinfab.seams.partial import auto_cut
 from skinfab.seams.rules import EdgeRules
@@ -46,6 +48,14 @@ def test_only_what_locks_part_off_all_round() -> None:
     assert enclosed_pieces(skin.mesh, pieces, locked, 4.0) == []
     whole = auto_cut(sheet(3), LIMITS).skin
     assert enclosed_pieces(whole.mesh, whole.pieces, np.zeros(len(locked), dtype=bool), 4.0) == []
+
+
+def test_of_a_document() -> None:
+    skin = sheet(18)
+    locked = lock(skin, skin.mesh.topology.FE[30])
+    cut = auto_cut(locked, LIMITS, neck=4.0)
+    assert enclosed_words(cut.skin, 4.0) == [fault.text for fault in cut.faults] and len(cut.faults) == 1
+    assert enclosed_words(cut.skin, 0.1) == enclosed_words(replace(cut.skin, marks=None), 4.0) == []
 
 
 @pytest.mark.parametrize("aim", ["fewest", "usual", "simplest"])
