@@ -74,6 +74,16 @@ def test_models_that_are_none(tmp_path) -> None:
     save_model(tmp_path / "b.npz", kind="force shape", facts={"features": "smell", "shapes": list(SHAPES)}, arrays=arrays)
     with pytest.raises(InputError, match="smell"):
         ShapeModel.load(tmp_path / "b.npz")
+    for name, limits in (
+        ("misfit_limits", [1.0, 2.0, 3.0]),
+        ("misfit_limits", [1.0, 0.0, 1.0, 1.0]),
+        ("misfit_limits", {}),
+        ("misfit_limit", []),
+    ):
+        facts = {"features": "misfits", "shapes": list(SHAPES), name: limits}
+        save_model(tmp_path / "c.npz", kind="force shape", facts=facts, arrays=arrays)
+        with pytest.raises(InputError, match="limits of the misfit are|lacks a part"):
+            ShapeModel.load(tmp_path / "c.npz")
 
 
 def test_no_grasp_is_no_decision(model: ShapeModel) -> None:
