@@ -82,7 +82,7 @@ def test_models_that_are_none(tmp_path) -> None:
     ):
         facts = {"features": "misfits", "shapes": list(SHAPES), name: limits}
         save_model(tmp_path / "c.npz", kind="force shape", facts=facts, arrays=arrays)
-        with pytest.raises(InputError, match="limits of the misfit are|lacks a part"):
+        with pytest.raises(InputError, match=r"limits of the misfit are|lacks a part"):
             ShapeModel.load(tmp_path / "c.npz")
 
 
