@@ -18,7 +18,8 @@ from skinfab.bench.flatten import REPEATS, read_csv, write_csv
 from skinfab.bench.timing import one_processor, timed_twice
 from skinfab.errors import RefusedError
 from skinfab.fingertip.force.gravity import WORST_SD_MM, Centre, centre_of_gravity, published_centre
-from skinfab.fingertip.force.gravity_model import HandModel, centre_with, learn_hand
+from skinfab.fingertip.force.gravity_fit import learn_hand
+from skinfab.fingertip.force.gravity_model import HandModel, centre_with
 from skinfab.fingertip.force.gravity_simulator import PAPER_ESTIMATE, PAPER_TRUTH, HandScene, hold
 from skinfab.fingertip.force.poses import Poses, poses_of
 from skinfab.fingertip.force.wrench import SensorNoise

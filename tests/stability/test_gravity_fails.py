@@ -13,7 +13,8 @@ from skinfab.fingertip.force.gravity import (
     published_centre,
     require_certain,
 )
-from skinfab.fingertip.force.gravity_model import centre_with, learn_hand, mass_with
+from skinfab.fingertip.force.gravity_fit import learn_hand
+from skinfab.fingertip.force.gravity_model import centre_with, mass_with
 from skinfab.fingertip.force.gravity_simulator import PAPER_TRUTH, HandScene, directions, hold
 from skinfab.fingertip.force.liquid import stirred
 from skinfab.fingertip.force.liquid_simulator import stir

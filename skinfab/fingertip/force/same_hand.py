@@ -24,7 +24,7 @@ def weights_alike(model: HandModel, poses: Poses) -> float:
 
     Examples
     --------
-    >>> from skinfab.fingertip.force.gravity_model import learn_hand
+    >>> from skinfab.fingertip.force.gravity_fit import learn_hand
     >>> from skinfab.fingertip.force.gravity_simulator import hold
     >>> from skinfab.fingertip.force.poses import poses_of
     >>> model = learn_hand([poses_of(hold(seed=3, weighing=k).log) for k in range(2)])

@@ -8,7 +8,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from skinfab.errors import InputError, RefusedError
-from skinfab.fingertip.force.gravity_model import HandModel, learn_hand
+from skinfab.fingertip.force.gravity_fit import learn_hand
+from skinfab.fingertip.force.gravity_model import HandModel
 from skinfab.fingertip.force.poses import Poses
 
 #: Weights that differ by so many standard deviations, and by this part of themselves, are not one: gains of sensors differ by less.
