@@ -109,11 +109,13 @@ def test_interrupted(after_s: float, number: int, tmp_path: Path) -> None:
     assert left_in(out) == []
 
 
-#: Makes the cube into folder after folder, each with a limit, and says what came of it: one start for all.
+#: Makes the cube into folder after folder, each with a limit, and says what came of it: one start for all, and a small preview.
 LIMITED = """
 import resource, signal, sys
 from skinfab.cli.main import main
+from skinfab.report import preview
 
+preview._DPI = 40
 mesh, *folders = sys.argv[1:]
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 for folder in folders:
@@ -124,7 +126,7 @@ for folder in folders:
 
 def test_no_room_for_a_file(tmp_path: Path) -> None:
     """The kernel refuses to let any file grow past a limit, as it does on a full disk."""
-    folders = [tmp_path / str(most_bytes) for most_bytes in (0, 1_000, 30_000, 300_000)]
+    folders = [tmp_path / str(most_bytes) for most_bytes in (0, 1_000, 30_000, 100_000)]
     done = subprocess.run(
         [sys.executable, "-c", LIMITED, ROOT / "meshes/cube.obj", *folders],
         capture_output=True,
