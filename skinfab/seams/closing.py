@@ -14,6 +14,7 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
+from skinfab.seams.leading import leading_energies
 from skinfab.seams.sheet import Sheet
 from skinfab.tolerances import NEWTON_RIDGE
 
@@ -57,7 +58,8 @@ def closing_costs(sheet: Sheet, ends: Sequence[Fringe]) -> list[FloatArray]:
     found = []
     for end in ends:
         gap = (sheet.UV[end.pairs[:, 0]] - sheet.UV[end.pairs[:, 1]]).ravel()
-        found.append(_rises(sheet.flexibility.energy(*_loads(end.pairs)), gap))
+        rises = leading_energies(sheet.flexibility.energy(*_loads(end.pairs)), gap)
+        found.append(np.where(np.isnan(rises), np.inf, rises))  # held so stiffly that rounding hides how much it gives
     return found
 
 
@@ -104,31 +106,3 @@ def _loads(pairs: IntArray) -> tuple[IntArray, FloatArray]:
         loads[2 * one + x, k + x] += 1.0
         loads[2 * other + x, k + x] -= 1.0
     return np.stack([2 * vertices, 2 * vertices + 1], axis=1).ravel(), loads
-
-
-@numba.njit(cache=True)
-def _rises(A: FloatArray, gap: FloatArray) -> FloatArray:
-    """Half of gap^T A^-1 gap, of the flexibility A, for the first pair, the first two, and so on: Cholesky, row by row."""
-    n = gap.shape[0]
-    ridge = NEWTON_RIDGE * np.trace(A) / n
-    L, share, rise = np.zeros((n, n)), np.zeros(n), np.full(n // 2, np.inf)
-    total = 0.0
-    for i in range(n):
-        for j in range(i + 1):
-            x = (A[i, j] + A[j, i]) / 2
-            for k in range(j):
-                x -= L[i, k] * L[j, k]
-            if j < i:
-                L[i, j] = x / L[j, j]
-            elif x + ridge > 0.0:
-                L[i, i] = np.sqrt(x + ridge)
-            else:  # held so stiffly that rounding hides how much it gives
-                return rise
-        y = gap[i]
-        for k in range(i):
-            y -= L[i, k] * share[k]
-        share[i] = y / L[i, i]
-        total += share[i] ** 2 / 2
-        if i % 2:
-            rise[i // 2] = total
-    return rise

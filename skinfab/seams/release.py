@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from skinfab.flatten._dirichlet import assemble, vertex_pattern
 from skinfab.flatten.flexibility import Flexibility
 from skinfab.flatten.isometric import IsometricSolver
-from skinfab.tolerances import NEWTON_RIDGE
+from skinfab.seams.leading import leading_energies
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -128,31 +128,10 @@ def held_releases(sides: Sequence[Side]) -> list[FloatArray]:
     return [_decreases(side.stiffness, side.gradient) for side in sides]
 
 
-@numba.njit(cache=True)
 def _decreases(stiffness: FloatArray, force: FloatArray) -> FloatArray:
-    """Half of force^T stiffness^-1 force for the first two unknowns, the first four, and so on: Cholesky, row by row."""
-    n = force.shape[0]
-    ridge = NEWTON_RIDGE * np.trace(stiffness) / n
-    L, share, decrease = np.zeros((n, n)), np.zeros(n), np.zeros(n // 2)
-    total = 0.0
-    for i in range(n):
-        for j in range(i + 1):
-            x = (stiffness[i, j] + stiffness[j, i]) / 2
-            for k in range(j):
-                x -= L[i, k] * L[j, k]
-            if j < i:
-                L[i, j] = x / L[j, j]
-            elif x + ridge > 0.0:
-                L[i, i] = np.sqrt(x + ridge)
-            else:  # nothing holds that side: such a seam is no dart
-                return np.zeros(n // 2)
-        y = force[i]
-        for k in range(i):
-            y -= L[i, k] * share[k]
-        share[i] = y / L[i, i]
-        total += share[i] ** 2 / 2
-        decrease[i // 2] = total
-    return decrease
+    """What the sides give up with the first two unknowns, the first four, and so on."""
+    energy = leading_energies(stiffness, force)
+    return np.zeros(len(energy)) if np.isnan(energy).any() else energy  # nothing holds that side: such a seam is no dart
 
 
 @numba.njit(cache=True)
