@@ -284,3 +284,11 @@ EDGE_SPACING = 4
 #: Bounds on a piece's mean d by name: the usual one, at which a skin lies as a flat piece does, and two that need less seam
 #: (2.23 and 1.87 times the root of the area on average over 13 objects, for 2.72).
 BOUNDS = {"standard": 4.05, "short": 4.1, "shortest": 4.2}
+
+#: Root of the area at which seams are looked for: edge collapses (libigl's qslim) add 1e-10 to every quadric, whatever the unit, which
+#: at this size gives flat sides sound triangles; at 20 m their triangles were left without area.
+SEARCH_SIZE = 0.25
+
+#: Points of that object lie on this grid: a hundred times finer than single precision (an STL file) tells them apart, and far coarser
+#: than rounding, so that they are the same grid points in any unit.
+SEARCH_GRID = 2.0**-32

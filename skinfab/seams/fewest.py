@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from skinfab.errors import InputError
 from skinfab.mesh.model import Mesh
 from skinfab.seams.coarse import coarsen, transfer
 from skinfab.seams.creases import without_scraps
@@ -27,7 +28,7 @@ from skinfab.seams.rules import EdgeRules, coarse_rules
 from skinfab.seams.sheet import Sheet, Surface, lay_apart, lay_out, sheet_of
 from skinfab.seams.straighten import straightened
 from skinfab.seams.weights import seam_weights
-from skinfab.tolerances import SEARCH_DECREASE
+from skinfab.tolerances import SEARCH_DECREASE, SEARCH_GRID, SEARCH_SIZE
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -56,6 +57,12 @@ _MUCH_FINER = 2.0
 
 #: A finer mesh shows about this part of the d above 4 that a coarse one does; a much finer one, this.
 _FINER_SHOWS, _MUCH_FINER_SHOWS = 0.88, 0.75
+
+#: What is left above the bound when a sheet is laid apart weighs, for as much as the bound allows above 4, so many roots of the area.
+_EXCESS = 1.5
+
+#: Other starts are looked at where it is more than this part of what the bound allows above 4.
+_LITTLE = 0.2
 
 #: How often an end of a seam is tried elsewhere.
 _ROUNDS = 8
@@ -124,9 +131,10 @@ def fewest_seams(
         As `refine_seams`, which has the last word.
     """
     report = progress or (lambda done: None)
-    fine = _level(mesh, mesh, rules)
-    middle = fine if (some := coarsen(mesh, _MIDDLE_FACES)) is mesh else _level(mesh, some, rules)
-    small = middle if (few := coarsen(some, _COARSE_FACES)) is some else _level(mesh, few, rules)
+    unit, scale = _of_one_size(mesh)
+    fine = _level(unit, unit, rules)
+    middle = fine if (some := coarsen(unit, _MIDDLE_FACES)) is unit else _level(unit, some, rules)
+    small = middle if (few := coarsen(some, _COARSE_FACES)) is some else _level(unit, few, rules)
     much_finer = len(middle.mesh.F) > _MUCH_FINER * len(small.mesh.F)
     shown = 1.0 if small is middle else _MUCH_FINER_SHOWS if much_finer else _FINER_SHOWS
     last, bound = small is middle or much_finer, 4 + (limits.mean - 4) / shown
@@ -138,31 +146,42 @@ def fewest_seams(
     if small is not middle:
         cut = _carried(small, _cut_of(small, parts, sheets), middle)
         parts = _parts(middle)
-        sheets = [sheet_of(part.surface, cut[part.edges] & ~part.surface.mesh.topology.is_boundary) for part in parts]
-        sheets = [None if sheet is None else lay_out(sheet) for sheet in sheets]
+        sheets = [_laid_out(sheet_of(part.surface, _one_disk(part.surface, cut[part.edges]))) for part in parts]
     for k, sheet in enumerate(sheets):
         report(0.6 + 0.2 * k / len(parts))
         sheets[k] = None if sheet is None else _settled(sheet, limits)
     cut = _cut_of(middle, parts, sheets)
-    opened = {int(piece.faces[0]): piece for piece in open_pieces(middle.mesh, cut)}
-    pieces = [
-        _judged(middle.mesh, opened[int(part.piece.faces[0])], sheet, limits)
-        for part, sheet in zip(parts, sheets, strict=True)
-        if sheet is not None
-    ]
-    if middle is not fine or len(pieces) < len(parts) or not all(verdict.accepted for _, verdict in pieces):
+    pieces: list[Judged] = []
+    if middle is fine:
+        opened = {int(piece.faces[0]): piece for piece in open_pieces(mesh, cut)}
+        pieces = [
+            _judged(mesh, opened[int(part.piece.faces[0])], sheet, scale, limits)
+            for part, sheet in zip(parts, sheets, strict=True)
+            if sheet is not None
+        ]
+    if len(pieces) < len(parts) or not all(verdict.accepted for _, verdict in pieces):
         forbidden = None if rules is None else rules.forbidden
         cut, pieces = refine_seams(
             mesh,
             _carried(middle, cut, fine),
             limits,
-            fine.weight,
+            scale * fine.weight,
             tolerance=SEARCH_DECREASE,
             forbidden=forbidden,
             progress=lambda done: report(0.8 + 0.2 * done),
         )
     locked = None if rules is None else rules.locked
     return glue_pieces(mesh, cut, pieces, limits, neck=neck, excess=np.inf, tolerance=SEARCH_DECREASE, locked=locked)
+
+
+def _of_one_size(mesh: Mesh) -> tuple[Mesh, float]:
+    """The mesh about the origin at the size of the search, its vertices on a grid, and mm for each of its units of length.
+
+    The seams of an object are so the same in any unit and wherever it lies, for all that roundings differ.
+    """
+    scale = float(np.sqrt(mesh.area)) / SEARCH_SIZE
+    V = (mesh.V - mesh.V.mean(axis=0)) / scale
+    return Mesh(np.round(V / SEARCH_GRID) * SEARCH_GRID, mesh.F, mesh.name), scale
 
 
 def _level(mesh: Mesh, here: Mesh, rules: EdgeRules | None) -> _Level:
@@ -204,9 +223,9 @@ def _cut_of(level: _Level, parts: list[_Part], sheets: list[Sheet | None]) -> Bo
     return cut
 
 
-def _judged(mesh: Mesh, piece: OpenPiece, sheet: Sheet, limits: Limits) -> Judged:
+def _judged(mesh: Mesh, piece: OpenPiece, sheet: Sheet, scale: float, limits: Limits) -> Judged:
     uv = np.empty((len(piece.vertices), 2))
-    uv[piece.F.ravel()] = sheet.UV[sheet.F.ravel()]
+    uv[piece.F.ravel()] = scale * sheet.UV[sheet.F.ravel()]
     return piece, verdict_of(mesh, piece, uv, limits)
 
 
@@ -221,16 +240,23 @@ def _searched(surface: Surface, bound: float, *, last: bool, report: Callable[[f
         report(0.7 * k / len(openings))
         cut = np.zeros(len(surface.weight), dtype=bool)
         cut[opening] = True
-        if (start := sheet_of(surface, cut)) is None:
+        start = _laid_out(sheet_of(surface, cut))
+        if start is None:
             continue
         shortest = min((sheet.length for sheet in begun if sheet.mean <= compared), default=np.inf)
-        begun.append(grow(lay_out(start), compared, early=False, shorter_than=shortest) if len(openings) > 1 else lay_out(start))
+        begun.append(grow(start, compared, early=False, shorter_than=shortest) if len(openings) > 1 else start)
     if not begun:
         return None
     report(0.7)
-    now = grow(min(begun, key=lambda sheet: (sheet.mean > compared, sheet.length)), bound, early=last)
-    if last:
-        now = _apart(now, bound)
+    begun.sort(key=lambda sheet: (sheet.mean > compared, sheet.length))
+    now = grow(begun[0], bound, early=last)
+    if last and not _is_free(now):
+        # The barrier takes far more seam on some than on others, which shows as soon as they are laid apart.
+        apart = [lay_apart(now)]
+        if apart[0].mean - bound > _LITTLE * (bound - 4):
+            apart += [_laid_apart(grow(other, bound)) for other in begun[1:]]
+        heavy = _EXCESS * surface.size / max(bound - 4, np.finfo(float).tiny)
+        now = grow(min(apart, key=lambda sheet: sheet.length + heavy * max(sheet.mean - bound, 0)), bound)
     return exchange(now, bound, rounds=_ROUNDS) if now.mean <= bound else now
 
 
@@ -244,9 +270,41 @@ def _settled(sheet: Sheet, limits: Limits) -> Sheet:
 
 def _apart(sheet: Sheet, bound: float, p99: float = np.inf) -> Sheet:
     """Laid out anew where it covers itself, which takes far longer, and grown on."""
-    if sheet.mean > bound or sheet.apart is not None or sheet.is_simple:
-        return sheet
-    return grow(lay_apart(sheet), bound, p99=p99)
+    return sheet if sheet.mean > bound or _is_free(sheet) else grow(lay_apart(sheet), bound, p99=p99)
+
+
+def _is_free(sheet: Sheet) -> bool:
+    """Nothing of it covers anything else."""
+    return sheet.apart is not None or sheet.is_simple
+
+
+def _laid_apart(sheet: Sheet) -> Sheet:
+    return sheet if _is_free(sheet) else lay_apart(sheet)
+
+
+def _laid_out(sheet: Sheet | None) -> Sheet | None:
+    """None, as for what is no disk, where no layout can be begun: `refine_seams` has the last word on that."""
+    try:
+        return None if sheet is None else lay_out(sheet)
+    except InputError:  # a slit too short for a disk of needles: one opened elsewhere may do
+        return None
+
+
+def _one_disk(surface: Surface, cut: BoolArray) -> BoolArray:
+    """Seams (e,) drawn on other triangles may touch, and part off what they did not: the longest edges that mend that are closed,
+    and holes are opened to the boundary."""
+    topology = surface.mesh.topology
+    cut = cut & ~topology.is_boundary
+    label = topology.face_components(cut)[1].copy()
+    for edge in sorted(np.flatnonzero(cut).tolist(), key=lambda edge: -surface.lengths[edge]):
+        one, other = label[topology.EF[edge]]
+        if one != other:
+            cut[edge] = False
+            label[label == other] = one
+    (piece,) = open_pieces(surface.mesh, cut)
+    edges = mesh_edges(surface.mesh, piece, np.arange(len(piece.topology.E)))
+    cut[edges[cut_to_disk(piece.topology, surface.weight[edges], len(piece.vertices))]] = True
+    return cut & ~surface.forbidden
 
 
 def _openings(surface: Surface) -> list[IntArray]:

@@ -8,10 +8,14 @@ import shapes
 
 from skinfab.errors import RefusedError
 from skinfab.mesh.model import Mesh
+from skinfab.mesh.topology import Topology
 from skinfab.seams.auto import Seams, find_seams
 from skinfab.seams.cut import open_pieces, seam_length
+from skinfab.seams.fewest import _one_disk
 from skinfab.seams.judge import Limits
 from skinfab.seams.rules import EdgeRules
+from skinfab.seams.sheet import Surface, sheet_of
+from skinfab.seams.weights import seam_weights
 from skinfab.tolerances import OVERLAP_FRACTION
 
 LIMITS = Limits(mean=4.05)
@@ -157,3 +161,40 @@ def test_progress_rises_and_can_end_it() -> None:
     with pytest.raises(KeyboardInterrupt):
         find_seams(mesh, LIMITS, aim="fewest", progress=report)
     assert told == sorted(told) and len(told) >= 3
+
+
+@pytest.mark.parametrize("factor", [2.0**-9, 10.0, 25.4])
+def test_neither_the_unit_nor_the_place_matters(sphere: tuple[Mesh, Seams], factor: float) -> None:
+    mesh, seams = sphere
+    other = find_seams(Mesh(factor * mesh.V + [factor, 0, -3], mesh.F), LIMITS, aim="fewest")
+    np.testing.assert_array_equal(other.cut, seams.cut)
+
+
+def test_flat_sides_of_any_size_are_coarsened_to_sound_triangles() -> None:
+    """Of 20 m: decimated as it was, it had 57 triangles without area, and no layout could be begun."""
+    V, F = shapes.object_mesh("cube").V, shapes.object_mesh("cube").F
+    for _ in range(4):
+        topology = Topology(F)
+        a, b, c = F.T
+        ab, bc, ca = (topology.FE + len(V)).T
+        F = np.concatenate([np.stack(corners, axis=1) for corners in ((a, ab, ca), (b, bc, ab), (c, ca, bc), (ab, bc, ca))])
+        V = np.vstack([V, V[topology.E].mean(axis=1)])
+    seams = find_seams(Mesh(1024 * V, F), LIMITS, aim="fewest")
+    assert len(seams.pieces) == 1
+
+
+def test_seams_that_part_a_surface_or_leave_a_hole_are_mended_to_a_disk() -> None:
+    mesh = bumpy(2)
+    topology = mesh.topology
+    surface = Surface(mesh, seam_weights(mesh), np.zeros(len(topology.E), dtype=bool))
+    first, second = topology.EF.T
+    for rings in ((0.5,), (0.5, -0.5)):
+        cut = np.zeros(len(topology.E), dtype=bool)
+        for height in rings:
+            above = mesh.V[mesh.F].mean(axis=1)[:, 2] > 10 * height
+            cut |= above[first] != above[second]
+        assert sheet_of(surface, cut) is None
+        mended = _one_disk(surface, cut)
+        assert sheet_of(surface, mended) is not None and (cut & ~mended).sum() == len(rings)
+    whole = np.zeros(len(topology.E), dtype=bool)
+    assert sheet_of(surface, _one_disk(surface, whole)) is not None
