@@ -25,6 +25,7 @@ from skinfab.linalg import Cholesky, LowerTriangle
 from skinfab.tolerances import MOLLIFY, NEWTON_DECREASE, NEWTON_RIDGE
 
 FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
 
 #: Far from the optimum many steps follow that each promise little: from Tutte's start on a ramp of two turns and more,
 #: twice the promise gave up 10 bounds of 25 that were reached in the end, 16 times gave up none and cost no time.
@@ -73,7 +74,7 @@ class Apart:
         Of the barrier beside the mean d.
     """
 
-    loop: NDArray[np.int64]
+    loop: IntArray
     reach: float
     weight: float
 
@@ -95,7 +96,7 @@ class IsometricSolver:
     4.0
     """
 
-    def __init__(self, V: FloatArray, F: NDArray[np.int64]) -> None:
+    def __init__(self, V: FloatArray, F: IntArray) -> None:
         self.F, self.n = np.ascontiguousarray(F), len(V)
         self.rest = rest_triangles(V, F)
         twice_area = self.rest[:, 0, 0] * self.rest[:, 1, 1]
@@ -105,7 +106,7 @@ class IsometricSolver:
         self._discarded = 0
         self._join(np.empty((0, 3), dtype=np.int64))
 
-    def reopened(self, F: NDArray[np.int64], n: int) -> IsometricSolver:
+    def reopened(self, F: IntArray, n: int) -> IsometricSolver:
         """For the same triangles joined otherwise, (m, 3) of n vertices: their shapes are not measured anew."""
         other = copy(self)
         other.F, other.n = np.ascontiguousarray(F), n
@@ -187,7 +188,8 @@ class IsometricSolver:
 
     def flexibility(self, UV: FloatArray, apart: Apart | None = None) -> Flexibility:
         """Inverse of the Hessian at a layout without flips, with the barrier's where there is one."""
-        self._renew(np.ascontiguousarray(UV), apart)
+        u = np.ascontiguousarray(UV)
+        self._renew(u, apart, near_pairs(u, apart.loop, apart.reach) if apart else None)
         assert self._cholesky is not None
         return Flexibility.of(self._cholesky)
 
@@ -202,18 +204,19 @@ class IsometricSolver:
 
     def _step(self, u: FloatArray, apart: Apart | None, *, renew: bool) -> tuple[FloatArray, float]:
         """Downhill by the Hessian here (`renew`) or by the last that was factored, and the energy's slope along it."""
+        near = near_pairs(u, apart.loop, apart.reach) if apart else None
         renew = renew or self._cholesky is None
-        gradient = self._renew(u, apart) if renew else gradient_of(u, self.F, self.gradients, self.weight)
-        if apart:
-            barrier_gradient(u, near_pairs(u, apart.loop, apart.reach), apart.reach, apart.weight, gradient)
+        gradient = self._renew(u, apart, near) if renew else gradient_of(u, self.F, self.gradients, self.weight)
+        if apart and near is not None:
+            barrier_gradient(u, near, apart.reach, apart.weight, gradient)
         assert self._cholesky is not None
         step = self._cholesky.solve(-gradient)
         return step.reshape(-1, 2), float(gradient @ step)
 
-    def _renew(self, u: FloatArray, apart: Apart | None) -> FloatArray:
-        """The Hessian here factored; the gradient of d alone."""
-        if apart:
-            self._couple(u, apart)
+    def _renew(self, u: FloatArray, apart: Apart | None, near: IntArray | None) -> FloatArray:
+        """The Hessian here factored, with `near` in contact; the gradient of d alone."""
+        if apart and near is not None:
+            self._couple(u, apart, near)
         data, gradient = assemble(u, self.F, self.gradients, self.weight, self._place, self._indptr)
         if apart:
             barrier_hessian(u, self._pairs, self._pair_place, apart.reach, apart.weight, self._indptr, data)
@@ -225,14 +228,13 @@ class IsometricSolver:
         diagonal = self._indptr[:-1]
         data[diagonal] += NEWTON_RIDGE * data[diagonal].mean()
 
-    def _couple(self, u: FloatArray, apart: Apart) -> None:
+    def _couple(self, u: FloatArray, apart: Apart, near: IntArray) -> None:
         """Give what is in contact a place in the matrix; with some to spare, as each new pattern is to be analysed anew."""
-        now = near_pairs(u, apart.loop, apart.reach)
-        have = {tuple(pair) for pair in self._pairs.tolist()}
-        if any(tuple(pair) not in have for pair in now.tolist()):
+        have = set(map(tuple, self._pairs.tolist()))
+        if not have.issuperset(map(tuple, near.tolist())):
             self._join(near_pairs(u, apart.loop, _SPARE * apart.reach))
 
-    def _join(self, pairs: NDArray[np.int64]) -> None:
+    def _join(self, pairs: IntArray) -> None:
         self._pairs = pairs
         self._indptr, self._indices, place = vertex_pattern(np.concatenate([self.F, pairs]), self.n)
         self._place, self._pair_place = place[: len(self.F)], place[len(self.F) :]
@@ -261,7 +263,7 @@ class IsometricSolver:
         return 0.0, u, start
 
 
-def rest_triangles(V: FloatArray, F: NDArray[np.int64]) -> FloatArray:
+def rest_triangles(V: FloatArray, F: IntArray) -> FloatArray:
     """Each triangle in its own plane, (m, 2, 2) mm; one without a shape gets the least that can be computed with."""
     rest = local_triangles(V, F)
     shapeless = ~shaped_areas(V, F)[1]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import heapq
+from itertools import pairwise
 
 import numba
 import numpy as np
@@ -58,19 +59,33 @@ def dart_ways(sheet: Sheet, *, count: int, apart: float) -> list[Way]:
     tips = _apart_tips(scores, mesh.V, count, apart)
     of_vertex = np.empty(n, dtype=np.int64)
     of_vertex[sheet.origin] = np.arange(len(sheet.origin))
-    return [_way(sheet, of_vertex, before, by, tip) for tip in tips.tolist()]
+    start, vertices, edges = _walks(tips, before, by)
+    path = of_vertex[vertices]
+    # On the boundary a vertex of the surface may be several of the sheet: the one that the first edge begins at.
+    first = start[:-1]
+    face = sheet.EF[edges[first], 0]
+    path[first] = sheet.F[face][mesh.F[face] == vertices[first, None]]
+    return [Way(path[a:b], edges[a : b - 1]) for a, b in pairwise(start.tolist())]
 
 
-def _way(sheet: Sheet, of_vertex: IntArray, before: IntArray, by: IntArray, tip: int) -> Way:
-    vertices, edges = [tip], []
-    while before[vertices[-1]] >= 0:
-        edges.append(int(by[vertices[-1]]))
-        vertices.append(int(before[vertices[-1]]))
-    path = of_vertex[vertices[::-1]]
-    # On the boundary a vertex of the surface may be several of the sheet: the one that the last edge leads to.
-    face = sheet.EF[edges[-1], 0]
-    path[0] = sheet.F[face][sheet.surface.mesh.F[face] == vertices[-1]][0]
-    return Way(path, np.array(edges[::-1], dtype=np.int64))
+@numba.njit(cache=True)
+def _walks(tips: IntArray, before: IntArray, by: IntArray) -> tuple[IntArray, IntArray, IntArray]:
+    """From the boundary to each tip: where each begins, the vertices, and the edge after each (-1 after a tip)."""
+    start = np.zeros(tips.shape[0] + 1, dtype=np.int64)
+    for k in range(tips.shape[0]):
+        start[k + 1] = start[k] + 1
+        v = tips[k]
+        while before[v] >= 0:
+            v = before[v]
+            start[k + 1] += 1
+    vertices, edges = np.empty(start[-1], dtype=np.int64), np.full(start[-1], -1)
+    for k in range(tips.shape[0]):
+        at = start[k + 1] - 1
+        vertices[at] = tips[k]
+        while before[vertices[at]] >= 0:
+            vertices[at - 1], edges[at - 1] = before[vertices[at]], by[vertices[at]]
+            at -= 1
+    return start, vertices, edges
 
 
 @numba.njit(cache=True)

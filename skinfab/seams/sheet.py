@@ -134,9 +134,7 @@ class Sheet:
     @cached_property
     def d(self) -> FloatArray:
         """(m,) d of each triangle."""
-        J = np.einsum("fkc,fkd->fcd", self.UV[self.F], self.solver.gradients)
-        square, det = (J**2).sum(axis=(1, 2)), J[:, 0, 0] * J[:, 1, 1] - J[:, 0, 1] * J[:, 1, 0]
-        d: FloatArray = square + square / det**2
+        d: FloatArray = _distortions(self.UV, self.F, self.solver.gradients)
         return d
 
     @property
@@ -211,6 +209,22 @@ def carried(one: Sheet, other: Sheet) -> FloatArray:
 def _laid(sheet: Sheet, uv: FloatArray) -> Sheet:
     now = replace(sheet, UV=uv)
     return replace(now, mean=float(now.d @ sheet.solver.weight))
+
+
+@numba.njit(cache=True)
+def _distortions(UV: FloatArray, F: IntArray, gradients: FloatArray) -> FloatArray:
+    """(m,) |J|^2 + |J^-1|^2 of each triangle's Jacobian."""
+    d = np.empty(F.shape[0])
+    J = np.empty((2, 2))
+    for f in range(F.shape[0]):
+        J[:] = 0.0
+        for k in range(3):
+            for c in range(2):
+                for e in range(2):
+                    J[c, e] += UV[F[f, k], c] * gradients[f, k, e]
+        square = J[0, 0] ** 2 + J[0, 1] ** 2 + J[1, 0] ** 2 + J[1, 1] ** 2
+        d[f] = square + square / (J[0, 0] * J[1, 1] - J[0, 1] * J[1, 0]) ** 2
+    return d
 
 
 @numba.njit(cache=True)
