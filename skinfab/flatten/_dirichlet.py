@@ -36,6 +36,22 @@ def energies(u: FloatArray, F: IntArray, g: FloatArray, weight: FloatArray) -> f
 
 
 @numba.njit(cache=True)
+def distortions(UV: FloatArray, F: IntArray, gradients: FloatArray) -> FloatArray:
+    """(m,) |J|^2 + |J^-1|^2 of each triangle's Jacobian."""
+    d = np.empty(F.shape[0])
+    J = np.empty((2, 2))
+    for f in range(F.shape[0]):
+        J[:] = 0.0
+        for k in range(3):
+            for c in range(2):
+                for e in range(2):
+                    J[c, e] += UV[F[f, k], c] * gradients[f, k, e]
+        square = J[0, 0] ** 2 + J[0, 1] ** 2 + J[1, 0] ** 2 + J[1, 1] ** 2
+        d[f] = square + square / (J[0, 0] * J[1, 1] - J[0, 1] * J[1, 0]) ** 2
+    return d
+
+
+@numba.njit(cache=True)
 def extremes(u: FloatArray, F: IntArray, g: FloatArray, weight: FloatArray) -> tuple[float, float, float, float]:
     """Weighted sums of |J|^2 and of |J^-1|^2 over the triangles that are not flipped, the least singular value (negative
     where a triangle is flipped) and the largest; the last two are NaN where a coordinate is not a number."""

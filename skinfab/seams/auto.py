@@ -20,6 +20,7 @@ from skinfab.seams.coarse import coarsen, transfer
 from skinfab.seams.creases import crease_seams, without_scraps
 from skinfab.seams.cut import open_pieces, seam_length
 from skinfab.seams.fewest import fewest_seams
+from skinfab.seams.finish import finished
 from skinfab.seams.glue import glue_pieces
 from skinfab.seams.judge import Limits
 from skinfab.seams.naming import named_edges
@@ -121,7 +122,7 @@ def find_seams(
         return Seams(*simplest_seams(mesh, limits, neck=neck, rules=rules, progress=report))
     if aim == "usual":
         return _at_best(mesh, limits, neck, rules, parts, report)
-    found = Seams(*fewest_seams(mesh, limits, neck=neck, rules=rules, progress=report))
+    found = _fewest(mesh, limits, neck, rules, report)
     if len(found.pieces) <= parts:
         return found
     try:
@@ -129,6 +130,17 @@ def find_seams(
     except RefusedError:  # there is an answer already
         return found
     return min(found, other, key=lambda seams: (len(seams.pieces), seam_length(mesh, seams.cut)))
+
+
+def _fewest(mesh: Mesh, limits: Limits, neck: float, rules: EdgeRules | None, report: Callable[[float], None]) -> Seams:
+    """Where the p99 is bounded, the seams that the mean alone takes, if the rest of its bound evens their hot spots out."""
+    if np.isfinite(limits.p99):
+        plain = replace(limits, p99=np.inf)
+        cut, pieces = fewest_seams(mesh, plain, neck=neck, rules=rules, progress=lambda done: report(0.5 * done))
+        pieces = [finished(mesh, item, plain) for item in pieces]
+        if all(verdict.distortion.p99 <= limits.p99 for _, verdict in pieces):
+            return Seams(cut, pieces)
+    return Seams(*fewest_seams(mesh, limits, neck=neck, rules=rules, progress=report))
 
 
 def _at_best(mesh: Mesh, limits: Limits, neck: float, rules: EdgeRules | None, parts: int, report: Callable[[float], None]) -> Seams:

@@ -3,20 +3,24 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from skinfab.flatten.bijective import flatten_bijective, keep_apart
 from skinfab.flatten.isometric import IsometricSolver
 from skinfab.mesh.model import Mesh
-from skinfab.seams.auto import Seams
+from skinfab.seams.even import evened
 from skinfab.seams.judge import Limits, verdict_of
 from skinfab.seams.refine import Judged
+
+if TYPE_CHECKING:
+    from skinfab.seams.auto import Seams
 
 #: Sides in contact creep past each other in hundreds of steps, for next to nothing.
 _APART_STEPS = 12
 
 
 def finish(mesh: Mesh, seams: Seams, limits: Limits) -> Seams:
-    """The same pieces, each at its least d.
+    """The same pieces, each at its least d, or with fewer hot spots where it uses the bound nearly to the full (`evened`).
 
     A piece that would cover itself at its least d, be it by less than counts, is driven to the least d without overlap.
 
@@ -28,10 +32,16 @@ def finish(mesh: Mesh, seams: Seams, limits: Limits) -> Seams:
     limits : Limits
         What they were accepted under.
     """
-    return replace(seams, pieces=[_finish(mesh, item, limits) for item in seams.pieces])
+    return replace(seams, pieces=[finished(mesh, item, limits) for item in seams.pieces])
 
 
-def _finish(mesh: Mesh, item: Judged, limits: Limits) -> Judged:
+def finished(mesh: Mesh, item: Judged, limits: Limits) -> Judged:
+    """`finish` of one piece."""
+    piece, verdict = evened(mesh, _at_least(mesh, item, limits), limits)
+    return piece, replace(verdict, parted=item[1].parted)
+
+
+def _at_least(mesh: Mesh, item: Judged, limits: Limits) -> Judged:
     piece, before = item
     V = mesh.V[piece.vertices]
     solver = IsometricSolver(V, piece.F)

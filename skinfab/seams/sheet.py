@@ -14,6 +14,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from skinfab.flatten._dirichlet import distortions
 from skinfab.flatten.bijective import flatten_bijective
 from skinfab.flatten.disk import flatten_isometric
 from skinfab.flatten.distortion import quantiles
@@ -134,7 +135,7 @@ class Sheet:
     @cached_property
     def d(self) -> FloatArray:
         """(m,) d of each triangle."""
-        d: FloatArray = _distortions(self.UV, self.F, self.solver.gradients)
+        d: FloatArray = distortions(self.UV, self.F, self.solver.gradients)
         return d
 
     @property
@@ -209,22 +210,6 @@ def carried(one: Sheet, other: Sheet) -> FloatArray:
 def _laid(sheet: Sheet, uv: FloatArray) -> Sheet:
     now = replace(sheet, UV=uv)
     return replace(now, mean=float(now.d @ sheet.solver.weight))
-
-
-@numba.njit(cache=True)
-def _distortions(UV: FloatArray, F: IntArray, gradients: FloatArray) -> FloatArray:
-    """(m,) |J|^2 + |J^-1|^2 of each triangle's Jacobian."""
-    d = np.empty(F.shape[0])
-    J = np.empty((2, 2))
-    for f in range(F.shape[0]):
-        J[:] = 0.0
-        for k in range(3):
-            for c in range(2):
-                for e in range(2):
-                    J[c, e] += UV[F[f, k], c] * gradients[f, k, e]
-        square = J[0, 0] ** 2 + J[0, 1] ** 2 + J[1, 0] ** 2 + J[1, 1] ** 2
-        d[f] = square + square / (J[0, 0] * J[1, 1] - J[0, 1] * J[1, 0]) ** 2
-    return d
 
 
 @numba.njit(cache=True)

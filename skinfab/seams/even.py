@@ -1,0 +1,93 @@
+"""Hot spots evened out: what a layout leaves of the bound on the mean d is spent on its p99."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from skinfab.flatten._dirichlet import distortions
+from skinfab.flatten.bijective import keep_apart
+from skinfab.flatten.distortion import quantiles
+from skinfab.flatten.isometric import Apart, IsometricSolver
+from skinfab.mesh.model import Mesh
+from skinfab.seams.judge import Limits, Verdict, verdict_of
+from skinfab.seams.refine import Judged
+
+FloatArray = NDArray[np.float64]
+
+#: A piece that leaves more of the bound than this is left at its least mean d.
+_USED = 0.75
+
+#: By how much more a triangle at the p99 counts than one at d 4; between the last that keeps to the bound and the next so many are tried.
+_WEIGHTS, _BETWEEN = (0.25, 0.5, 1.0, 2.0, 4.0), 2
+
+#: The weights follow the layout so often, of which each is two Newton steps.
+_ROUNDS, _STEPS = 2, 2
+
+
+def evened(mesh: Mesh, item: Judged, limits: Limits) -> Judged:
+    """An accepted piece with less d where it is worst, for a little more on the mean, within its bound.
+
+    At the least mean d moving costs the mean nothing to first order, and the p99 gains to first order. Triangles are weighted by
+    1 + w min((d - 4) / (p99 - 4), 1), anew as the layout follows: of the sum of d with a part that grows with the square of
+    d - 4 up to the p99, and in proportion from there. The largest w is taken that the bound on the mean allows and that gains.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    item : (OpenPiece, Verdict)
+        At its least mean d.
+    limits : Limits
+
+    Returns
+    -------
+    (OpenPiece, Verdict)
+        The same where the piece leaves a quarter of the bound or more, or where nothing is gained; no less accepted, and with
+        overlap only where it had some.
+    """
+    piece, before = item
+    if before.distortion.mean - 4 < _USED * (limits.mean - 4):
+        return item
+    V = mesh.V[piece.vertices]
+    solver = IsometricSolver(V, piece.F)
+    free, covers = _evened(mesh, item, limits, solver, None)
+    if free is before and covers:
+        free, _ = _evened(mesh, item, limits, solver, keep_apart(V, piece.topology))
+    return piece, free
+
+
+def _evened(mesh: Mesh, item: Judged, limits: Limits, solver: IsometricSolver, apart: Apart | None) -> tuple[Verdict, bool]:
+    """The layout of least p99, and whether the next one covered itself."""
+    piece, best = item
+    most = best.distortion.overlap_mm2
+    good, bad, covers = 0.0, np.inf, False
+    weights = iter(_WEIGHTS)
+    between = 0
+    while between < _BETWEEN:
+        weight = next(weights, None) if np.isinf(bad) else (good + bad) / 2
+        if weight is None:
+            break
+        between += np.isfinite(bad)
+        found = verdict_of(mesh, piece, _weighted(solver, best.UV, weight, apart), limits)
+        covers = found.distortion.overlap_mm2 > most
+        if covers:
+            break
+        if found.accepted and found.distortion.p99 < best.distortion.p99:
+            best, good = found, weight
+        else:
+            bad = weight
+    return best, covers
+
+
+def _weighted(solver: IsometricSolver, UV: FloatArray, weight: float, apart: Apart | None) -> FloatArray:
+    area = solver.weight
+    try:
+        for _ in range(_ROUNDS):
+            excess = distortions(UV, solver.F, solver.gradients) - 4
+            (worst,) = quantiles(excess, area, (0.99,))
+            solver.weight = area * (1 + weight * np.minimum(excess / worst, 1))
+            solver.weight /= solver.weight.sum()
+            UV = solver.refine(UV, max_steps=_STEPS, apart=apart).UV
+        return UV
+    finally:
+        solver.weight = area
