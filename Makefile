@@ -1,5 +1,5 @@
 # Two commands do everything, their own set-up included: `make demo` and `make test`.
-.PHONY: demo test collected setup lint peers lock pictures package audit docs fuzz
+.PHONY: demo test tested collected setup lint peers lock pictures package audit docs fuzz
 
 PYTHON = .venv/bin/python
 COMPILING = tests/test_docs.py tests/fingertip/array/test_contours.py tests/fingertip/array/test_layer.py
@@ -10,10 +10,13 @@ demo: setup
 	@echo "Results are in demo_out/: open demo_out/report.html in a browser; G-code is in demo_out/gcode/, moulds in demo_out/mould/."
 
 # The many processes that tests start find what they import compiled; of two workers each computes on one core.
-test: export PYTHONDONTWRITEBYTECODE =
-test: export OMP_NUM_THREADS = 1
-test: export OPENBLAS_NUM_THREADS = 1
-test: lint peers collected
+# With -j the tests begin while the types are still being looked at.
+test: lint tested
+
+tested: export PYTHONDONTWRITEBYTECODE =
+tested: export OMP_NUM_THREADS = 1
+tested: export OPENBLAS_NUM_THREADS = 1
+tested: peers collected
 	@# Stealing leaves files whole but for a few: what the tests of a file share is made once. (loadgroup groups nothing with pytest 9.2 and xdist 3.8.)
 	@# What was run to have it compiled is not run once more.
 	$(PYTHON) -m pytest -q -W error -n 2 --dist worksteal --doctest-modules $(COMPILING:%=--ignore=%) skinfab gcode calibration tests

@@ -18,8 +18,12 @@ FloatArray = NDArray[np.float64]
 #: A piece that leaves more of the bound than this is left at its least mean d.
 _USED = 0.75
 
-#: By how much more a triangle at the p99 counts than one at d 4; between the last that keeps to the bound and the next so many are tried.
-_WEIGHTS, _BETWEEN = (0.25, 0.5, 1.0, 2.0, 4.0), 2
+#: By how much more a triangle at the p99 counts than one at d 4: at first, and at most. What that costs the mean grows with the square
+#: for small weights, so that three tries come near to the bound.
+_FIRST, _MOST, _TRIED = 0.5, 4.0, 3
+
+#: A try aims at this part of what the bound leaves, and near enough is that.
+_AIM, _NEAR = 0.9, 0.8
 
 #: The weights follow the layout so often, of which each is two Newton steps.
 _ROUNDS, _STEPS = 2, 2
@@ -46,7 +50,7 @@ def evened(mesh: Mesh, item: Judged, limits: Limits) -> Judged:
         overlap only where it had some.
     """
     piece, before = item
-    if before.distortion.mean - 4 < _USED * (limits.mean - 4):
+    if not _USED * (limits.mean - 4) <= before.distortion.mean - 4 < limits.mean - 4:
         return item
     V = mesh.V[piece.vertices]
     solver = IsometricSolver(V, piece.F)
@@ -59,24 +63,19 @@ def evened(mesh: Mesh, item: Judged, limits: Limits) -> Judged:
 def _evened(mesh: Mesh, item: Judged, limits: Limits, solver: IsometricSolver, apart: Apart | None) -> tuple[Verdict, bool]:
     """The layout of least p99, and whether the next one covered itself."""
     piece, best = item
-    most = best.distortion.overlap_mm2
-    good, bad, covers = 0.0, np.inf, False
-    weights = iter(_WEIGHTS)
-    between = 0
-    while between < _BETWEEN:
-        weight = next(weights, None) if np.isinf(bad) else (good + bad) / 2
-        if weight is None:
-            break
-        between += np.isfinite(bad)
+    least = best.distortion
+    weight, spare = _FIRST, limits.mean - least.mean
+    for _ in range(_TRIED):
         found = verdict_of(mesh, piece, _weighted(solver, best.UV, weight, apart), limits)
-        covers = found.distortion.overlap_mm2 > most
-        if covers:
-            break
+        if found.distortion.overlap_mm2 > least.overlap_mm2:
+            return best, True
         if found.accepted and found.distortion.p99 < best.distortion.p99:
-            best, good = found, weight
-        else:
-            bad = weight
-    return best, covers
+            best = found
+        share = (found.distortion.mean - least.mean) / spare
+        if _NEAR < share <= 1 or (share < 1 and weight == _MOST):
+            break
+        weight = min(weight * np.sqrt(_AIM / max(share, _AIM / 16)), _MOST)
+    return best, False
 
 
 def _weighted(solver: IsometricSolver, UV: FloatArray, weight: float, apart: Apart | None) -> FloatArray:
