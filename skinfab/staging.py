@@ -63,7 +63,7 @@ def staged_folder(target: str | Path, *, tidy: bool = True) -> Iterator[Path]:
     made: list[Path] = []
     stage = target / f".skinfab-{secrets.token_hex(4)}"
     try:
-        with _signals_wait():
+        with signals_wait():
             made = _make_folders(target)
             _or_explain(stage.mkdir, target)
         try:
@@ -76,10 +76,10 @@ def staged_folder(target: str | Path, *, tidy: bool = True) -> Iterator[Path]:
         except InputError as fault:
             # The hidden folder is ours to know: the user gave the target.
             raise InputError(str(fault).replace(str(stage), str(target))) from fault
-        with _signals_wait():
+        with signals_wait():
             _or_explain(lambda: _move_into_place(stage, target, tidy=tidy), target)
     finally:
-        with _signals_wait():
+        with signals_wait():
             shutil.rmtree(stage, ignore_errors=True)
             for folder in reversed(made):
                 if not any(folder.iterdir()):
@@ -87,8 +87,20 @@ def staged_folder(target: str | Path, *, tidy: bool = True) -> Iterator[Path]:
 
 
 @contextmanager
-def _signals_wait() -> Iterator[None]:
-    """Hold Ctrl-C and its like back until the end of this short piece of work."""
+def signals_wait() -> Iterator[None]:
+    """Hold Ctrl-C and its like back until the end of this short piece of work.
+
+    Examples
+    --------
+    >>> try:
+    ...     with signals_wait():
+    ...         signal.raise_signal(signal.SIGINT)
+    ...         print("whole")
+    ... except KeyboardInterrupt:
+    ...     print("then interrupted")
+    whole
+    then interrupted
+    """
     if threading.current_thread() is not threading.main_thread():
         yield  # Python delivers signals to the main thread only
         return

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 from skinfab import __version__
 from skinfab.batch.job import LOCK
 from skinfab.errors import InputError
+from skinfab.staging import signals_wait
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -80,22 +81,29 @@ def connected(*, folder: Path, scheduler: str | None, workers: int) -> Iterator[
 def _local(workers: int) -> Iterator[Client]:
     from distributed import Client, LocalCluster
 
-    with (
-        _scratch() as scratch,
-        LocalCluster(
-            n_workers=workers,
-            threads_per_worker=1,
-            processes=True,
-            host="127.0.0.1",
-            dashboard_address="127.0.0.1:0",  # None would take port 8787 of all interfaces
-            memory_limit=0,  # that of a worker itself, which only waits
-            local_directory=scratch,
-            silence_logs=logging.CRITICAL,
-            preload=["skinfab.batch.worker"],
-        ) as cluster,
-        Client(cluster, set_as_default=False) as client,
-    ):
-        yield client
+    begun: list[LocalCluster] = []
+    with _scratch() as scratch:
+        try:
+            # Interrupted half-way it would be nobody's: Dask ends it as Python shuts down, and complains of workers that had not begun.
+            with signals_wait():
+                begun.append(
+                    LocalCluster(
+                        n_workers=workers,
+                        threads_per_worker=1,
+                        processes=True,
+                        host="127.0.0.1",
+                        dashboard_address="127.0.0.1:0",  # None would take port 8787 of all interfaces
+                        memory_limit=0,  # that of a worker itself, which only waits
+                        local_directory=scratch,
+                        silence_logs=logging.CRITICAL,
+                        preload=["skinfab.batch.worker"],
+                    )
+                )
+            with Client(begun[0], set_as_default=False) as client:
+                yield client
+        finally:
+            for cluster in begun:
+                cluster.close()
 
 
 @contextmanager
