@@ -36,6 +36,9 @@ BoolArray = NDArray[np.bool_]
 #: What automatic seams are to give, see `find_seams`.
 Aim = Literal["fewest", "usual", "simplest"]
 
+#: So often seams are searched for a p99 that evening out is to bring within its bound.
+_P99_TRIES = 2
+
 #: Seams are searched on about this many triangles.
 _COARSE_FACES = 6000
 
@@ -133,14 +136,25 @@ def find_seams(
 
 
 def _fewest(mesh: Mesh, limits: Limits, neck: float, rules: EdgeRules | None, report: Callable[[float], None]) -> Seams:
-    """Where the p99 is bounded, the seams that the mean alone takes, if the rest of its bound evens their hot spots out."""
-    if np.isfinite(limits.p99):
-        plain = replace(limits, p99=np.inf)
-        cut, pieces = fewest_seams(mesh, plain, neck=neck, rules=rules, progress=lambda done: report(0.5 * done))
-        pieces = [finished(mesh, item, plain) for item in pieces]
-        if all(verdict.distortion.p99 <= limits.p99 for _, verdict in pieces):
+    """Where the p99 is bounded, seams that it takes where hot spots are evened out: at first those that the mean alone takes."""
+    if not np.isfinite(limits.p99):
+        return Seams(*fewest_seams(mesh, limits, neck=neck, rules=rules, progress=report))
+    searched = np.inf
+    for k in range(_P99_TRIES):
+
+        def further(done: float, k: int = k) -> None:
+            report((k + done) / (_P99_TRIES + 1))
+
+        loose = replace(limits, p99=searched)
+        cut, pieces = fewest_seams(mesh, loose, neck=neck, rules=rules, progress=further)
+        before = max(verdict.distortion.p99 for _, verdict in pieces)
+        pieces = [finished(mesh, item, loose) for item in pieces]
+        after = max(verdict.distortion.p99 for _, verdict in pieces)
+        if after <= limits.p99:
             return Seams(cut, pieces)
-    return Seams(*fewest_seams(mesh, limits, neck=neck, rules=rules, progress=report))
+        # Evening out takes about the same part of what is above 4 again.
+        searched = 4 + (limits.p99 - 4) * max((before - 4) / (after - 4), 1)
+    return Seams(*fewest_seams(mesh, limits, neck=neck, rules=rules, progress=lambda done: report((_P99_TRIES + done) / (_P99_TRIES + 1))))
 
 
 def _at_best(mesh: Mesh, limits: Limits, neck: float, rules: EdgeRules | None, parts: int, report: Callable[[float], None]) -> Seams:

@@ -76,5 +76,7 @@ def test_a_bound_on_the_p99_takes_no_seam_where_evening_out_will_do() -> None:
     bounded = Limits(mean=4.05, p99=p99 + 1e-9)
     found = find_seams(mesh, bounded, aim="fewest")
     assert (found.cut == plain.cut).all() and all(verdict.accepted for _, verdict in finish(mesh, found, bounded).pieces)
-    tighter = find_seams(mesh, Limits(mean=4.05, p99=4 + 0.6 * (p99 - 4)), aim="fewest")
+    tight = Limits(mean=4.05, p99=4 + 0.6 * (p99 - 4))
+    tighter = find_seams(mesh, tight, aim="fewest")
     assert tighter.cut.sum() > plain.cut.sum()
+    assert all(verdict.accepted for _, verdict in finish(mesh, tighter, tight).pieces)
