@@ -8,7 +8,7 @@ import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 from skinfab.errors import InputError
 from skinfab.toml_file import read_toml
@@ -156,29 +156,14 @@ class Home:
         """Where the result of a job is."""
         return self.folder / "jobs" / name
 
+    def record(self, name: str) -> Path:
+        """Where its record is."""
+        return self.place(name) / RECORD
+
     @property
     def under_way(self) -> Path:
         """For locks, and for what is being made."""
         return self.folder / ".under-way"
-
-    def record(self, name: str) -> dict[str, Any] | None:
-        """The record of a job that is over, or None.
-
-        Raises
-        ------
-        InputError
-            There is one, and it is not what was written.
-        """
-        path = self.place(name) / RECORD
-        try:
-            found = json.loads(path.read_bytes())
-        except (FileNotFoundError, NotADirectoryError):
-            return None
-        except ValueError as fault:
-            raise InputError(f"{path} is damaged ({fault}); remove {path.parent}, and the job is done again") from fault
-        if not isinstance(found, dict) or found.get("job") != name or found.get("status") not in STATUSES:
-            raise InputError(f"{path} is not the record of job {name}; remove {path.parent}, and the job is done again")
-        return found
 
     def names(self) -> set[str]:
         """Names of all jobs that are over, also those of other settings."""

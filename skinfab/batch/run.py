@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import fcntl
 import json
+import os
 import queue
 import secrets
 import shutil
@@ -18,6 +19,7 @@ from typing import TYPE_CHECKING, Any
 from skinfab import __version__
 from skinfab.batch.cluster import GONE, Slots, connected
 from skinfab.batch.job import ATTEMPTS, LOCK, Home, Job
+from skinfab.batch.record import read_record
 from skinfab.batch.worker import end_jobs, runner_command, task
 from skinfab.errors import InputError
 from skinfab.files import atomic_write, explain_os_error
@@ -142,10 +144,13 @@ def _done(home: Home, jobs: Sequence[Job]) -> tuple[dict[str, dict[str, Any]], l
     there = home.names()
     done = {}
     for job in jobs:
-        if job.name not in there or (record := home.record(job.name)) is None:
+        if job.name not in there or (record := read_record(home.record(job.name), job.name)) is None:
             continue
         if _raised(record, job):
-            shutil.rmtree(home.place(job.name))
+            home.under_way.mkdir(exist_ok=True)
+            aside = home.under_way / f"{job.name}-{secrets.token_hex(4)}"
+            os.rename(home.place(job.name), aside)  # in one step: a half of it, left by a kill, would be in the way of the new one
+            shutil.rmtree(aside)
         else:
             done[job.name] = record
     others = len(there - {job.name for job in jobs})

@@ -86,8 +86,8 @@ def write_tables(plan: Plan, outcome: Outcome, folder: Path) -> dict[str, Any]:
         They cannot be written.
     """
     found = as_object(plan, outcome)
-    atomic_write(folder / CSV, _csv(plan, outcome))
-    atomic_write(folder / PAGE, _page(plan, outcome, folder))
+    for name, text in ((CSV, _csv(plan, outcome)), (PAGE, _page(plan, outcome, folder))):
+        atomic_write(folder / name, text.encode(errors="backslashreplace"))  # names of files may have bytes that are no UTF-8
     atomic_write(folder / OBJECT, json.dumps(found, indent=1, allow_nan=False) + "\n")
     return found
 

@@ -21,6 +21,7 @@ from typing import Any
 
 from skinfab import __version__
 from skinfab.batch.job import ATTEMPTS, RECORD, SAID, Home, Job
+from skinfab.batch.record import read_record
 from skinfab.batch.runner import Ran
 from skinfab.errors import InputError
 from skinfab.files import DISK_FULL, atomic_write, explain_os_error
@@ -158,7 +159,7 @@ def do_job(job: Job, folder: str, run: str, runners: Runners) -> dict[str, Any]:
         home.under_way.mkdir(parents=True, exist_ok=True)
         # A worker that is cut off from its cluster goes on: the same job, given to another, waits here until that one is over.
         with _held(home.under_way / f"{job.name}.lock") as begun:
-            if (record := home.record(job.name)) is not None:
+            if (record := read_record(home.record(job.name), job.name)) is not None:
                 return record
             return _do(job, home, run, runners, begun)
     except OSError as fault:

@@ -1,12 +1,8 @@
-"""A job's name is that of its content, and its record is read as it was written or not at all."""
+"""A job's name is that of its content."""
 
-import json
 from pathlib import Path
 
-import pytest
-
-from skinfab.batch.job import Home, Job, name_of
-from skinfab.errors import InputError
+from skinfab.batch.job import Job, name_of
 
 
 def test_the_name_is_of_the_content_and_not_of_the_place(tmp_path: Path) -> None:
@@ -38,15 +34,3 @@ def test_a_mesh_that_cannot_be_read_has_a_name_until_it_can(tmp_path: Path) -> N
     assert not job.has_changed()
     (tmp_path / "a.obj").write_text("v")
     assert job.has_changed()
-
-
-@pytest.mark.parametrize("text", ["{", "[]", '{"job": "another", "status": "made"}', '{"job": "n", "status": "?"}'])
-def test_a_damaged_record_says_what_to_remove(tmp_path: Path, text: str) -> None:
-    home = Home(tmp_path)
-    assert home.record("n") is None and home.names() == set()
-    home.place("n").mkdir(parents=True)
-    (home.place("n") / "job.json").write_text(text)
-    with pytest.raises(InputError, match=r"remove .*jobs/n, and the job is done again"):
-        home.record("n")
-    (home.place("n") / "job.json").write_text(json.dumps({"job": "n", "status": "made"}))
-    assert home.record("n") == {"job": "n", "status": "made"} and home.names() == {"n"}

@@ -156,13 +156,23 @@ def test_a_scheduler_that_dies_is_told_and_another_goes_on(tmp_path: Path, sched
     assert ends(outcome.records) == {"made": 2} and [r["attempts"] for r in outcome.records.values()] == [1, 2]
 
 
-def test_what_failed_for_a_limit_is_done_again_when_that_is_raised(tmp_path: Path, scheduler: str) -> None:
+def test_what_failed_for_a_limit_is_done_again_when_that_is_raised(tmp_path: Path, scheduler: str, monkeypatch: pytest.MonkeyPatch) -> None:
     mesh = tmp_path / "meshes"
     mesh.mkdir()
     jobs = [quick_job(mesh, "sleep 0.5", time_s=0.1), quick_job(mesh, "failed", time_s=0.1), quick_job(mesh, "make", time_s=60)]
     assert ends(run(jobs, tmp_path / "out", scheduler).records) == {"time": 1, "failed": 1, "made": 1}
     assert run(jobs, tmp_path / "out", scheduler).before == 3
-    raised = run([replace(job, time_s=60) for job in jobs], tmp_path / "out", scheduler)
+    wider = [replace(job, time_s=60) for job in jobs]
+
+    def broken_off(path: Path) -> None:
+        (path / "job.json").unlink()
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as killed:
+        killed.setattr("shutil.rmtree", broken_off)
+        with pytest.raises(KeyboardInterrupt):
+            run(wider, tmp_path / "out", scheduler)
+    raised = run(wider, tmp_path / "out", scheduler)
     assert raised.before == 2 and ends(raised.records) == {"made": 2, "failed": 1}
     fewer = run(jobs[:1], tmp_path / "out", scheduler)
     assert fewer.notes == (f"2 results in {tmp_path / 'out/jobs'} are of other meshes or settings and left alone",)

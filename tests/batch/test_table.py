@@ -2,6 +2,7 @@
 
 import csv
 import json
+import os
 import re
 from pathlib import Path
 
@@ -43,3 +44,12 @@ def test_counts_rows_and_links(tmp_path: Path) -> None:
     assert ">a.obj</a>" in page and ">in/&lt;b&gt;.obj</a>" in page
     assert "2 jobs (1 of them done before): 1 made, 1 whose input cannot be used" in page
     assert "<script" not in page and "http" not in page
+
+
+def test_a_name_that_is_no_utf_8_is_shown_by_its_bytes(tmp_path: Path) -> None:
+    job = Job("n", os.fsdecode(b"/in/\xe9.obj"), {})
+    plan = Plan((job,), (), {"n": {}})
+    write_tables(plan, Outcome({"n": {"job": "n", "status": "failed", "message": "no mesh"}}, 0, ()), tmp_path)
+    assert (
+        "n,/in/\\udce9.obj,failed," in (tmp_path / "batch.csv").read_text() and ">\\udce9.obj</a>" in (tmp_path / "batch.html").read_text()
+    )

@@ -28,7 +28,11 @@ from gcode.check import judge
 from gcode.parse import parse
 from gcode.printer import Printer, load_printer
 from gcode.words import read_text
-from skinfab.batch.plan import read_plan
+from skinfab.batch.job import Job
+from skinfab.batch.plan import Plan, read_plan
+from skinfab.batch.record import read_record
+from skinfab.batch.run import Outcome
+from skinfab.batch.table import write_tables
 from skinfab.document import load_skin
 from skinfab.errors import InputError, RefusedError
 from skinfab.fingertip.array.learn import load_array
@@ -190,6 +194,14 @@ def _plan(path: Path) -> None:
     assert read_plan(path, output=path.parent / "out").jobs
 
 
+def _record(path: Path) -> None:
+    """The record of a job, with the tables that show it."""
+    job = Job("n", str(path.parent / "a.obj"), {})
+    record = read_record(path, job.name)
+    assert record is not None
+    write_tables(Plan((job,), (), {job.name: {}}), Outcome({job.name: record}, 1, ()), path.parent)
+
+
 def _sensors(path: Path) -> None:
     made = read_sensors_file(path, material=load_material())
     assert made.requests or made.auto
@@ -282,6 +294,7 @@ PARSERS: dict[str, Parser] = {
     "material": Parser(_material, seeds.materials, ".toml"),
     "sensors": Parser(_sensors, seeds.sensor_files, ".toml"),
     "plan": Parser(_plan, seeds.plans, ".toml"),
+    "record": Parser(_record, seeds.records, ".json"),
     "cuts": Parser(_cuts, seeds.cuts, ".txt"),
     "strips": Parser(_strips, seeds.strip_tables, ".csv"),
     "wiring": Parser(_wiring, seeds.wirings, ".csv"),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import io
+import json
 import tempfile
 import zipfile
 from functools import cache
@@ -177,6 +178,17 @@ def plans() -> list[bytes]:
     return [
         b'meshes = ["' + meshes + b'"]\n[settings]\npieces = ["usual", "fewest"]\nmax-distortion = [4.05, 4.1]\n[limits]\ntime_s = 600\n'
     ]
+
+
+def records() -> list[bytes]:
+    """Of a job that was made, and of one that nobody could do."""
+    lost: dict[str, object] = {
+        **{"job": "n", "mesh": "/a.obj", "settings": {"pieces": "fewest"}, "limits": {"time_s": 60, "memory_mb": None}},
+        **{"skinfab": "1.0", "host": "a", "status": "lost", "message": "3 workers died", "attempts": 3},
+    }
+    figures = {"n_faces": 12, "n_pieces": 2, "d_mean": 4.01, "d_p99": 4.2, "seam_mm": 50.0}
+    made = {**lost, "wall_s": 1.5, "cpu_s": 1.4, "peak_mb": 250.0, "status": "made", "message": "", "figures": figures}
+    return [json.dumps(each).encode() for each in (made, lost)]
 
 
 def strip_tables() -> list[bytes]:
