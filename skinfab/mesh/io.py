@@ -107,8 +107,21 @@ def load_mesh(path: str | Path, *, units: str | None = None, scale: float = 1.0)
         raise InputError(f"{path.name} is {size:.3g} mm long, which nothing can be computed with; check --units and --scale")
     if odd := odd_size(size):
         notes.append(odd)
-    mesh = Mesh(V * factor, F, path.stem)
-    return Loaded(mesh, path.name, hashlib.sha256(data).hexdigest(), units, factor, tuple(notes))
+    mesh = Mesh(V * factor, F, name_of(path.stem))
+    file = path.name.encode(errors="backslashreplace").decode()  # bytes that are no UTF-8 go into no report
+    return Loaded(mesh, file, hashlib.sha256(data).hexdigest(), units, factor, tuple(notes))
+
+
+def name_of(stem: str) -> str:
+    """What a mesh is called after its file: what is no part of a file's name on every system, or of a drawing's text, is an underscore.
+
+    Examples
+    --------
+    >>> name_of("grip\\u3000v2"), name_of("left\\\\right"), name_of("..")
+    ('grip_v2', 'left_right', '_')
+    """
+    name = "".join(each if each.isprintable() and each not in "/\\" else "_" for each in stem)
+    return name if name.strip(".") else "_"
 
 
 def _read_bytes(path: Path) -> bytes:

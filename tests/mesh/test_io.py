@@ -1,6 +1,7 @@
 """Files of every format give the same mesh, in mm; real ones are what their list says."""
 
 import hashlib
+import os
 from pathlib import Path
 
 import numpy as np
@@ -62,3 +63,19 @@ def test_real_obj_files_are_read_as_libigl_reads_them() -> None:
         V, F = igl.read_triangle_mesh(str(path))
         np.testing.assert_array_equal(loaded.mesh.F, F, err_msg=path.name)
         np.testing.assert_allclose(loaded.mesh.V, V * loaded.scale, rtol=1e-14, atol=1e-12, err_msg=path.name)
+
+
+@pytest.mark.parametrize(
+    ("file", "name"),
+    [
+        ("\u00fc v2.obj", "\u00fc v2"),
+        ("grip\u3000v2.obj", "grip_v2"),  # a space that is not shown as one made a document that could not be opened again
+        ("a\x01\\b.obj", "a__b"),
+        (os.fsdecode(b"\xe9.obj"), "_"),  # no UTF-8: the first drawing ended in a traceback
+        ("...obj", "_"),
+    ],
+)
+def test_whatever_a_file_is_called_its_mesh_has_a_name_that_documents_take(tmp_path: Path, file: str, name: str) -> None:
+    (tmp_path / file).write_text("v 0 0 0\nv 20 0 0\nv 0 20 0\nf 1 2 3\n")
+    loaded = load_mesh(tmp_path / file)
+    assert loaded.mesh.name == name and loaded.file.encode()
