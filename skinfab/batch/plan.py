@@ -169,7 +169,8 @@ class _Reader:
             if self._options.is_file(key, value):
                 value = str(self._folder / str(value))
                 if not Path(value).is_file():
-                    raise InputError(f"there is no file {value}; paths count from the folder of {self._path.name}")
+                    what = f"{value} is a folder" if Path(value).is_dir() else f"there is no file {value}"
+                    raise InputError(f"{what}; paths count from the folder of {self._path.name}")
             self._options.require_known(key, value)
         except InputError as fault:
             self._refuse("settings", key, str(fault))

@@ -37,7 +37,10 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     p.add_argument("-o", "--output", metavar="DIR", help="folder for the G-code files, made if it is not there")
     p.add_argument("--arcs", choices=("native", "lines"), help="arcs as G2 and G3, or as chords (default: what the printer draws)")
     p.add_argument(
-        "--printer", metavar="NAME|FILE", help="printer profile (default: the skin's own; for check without one: ender5plus-vipro)"
+        "--printer",
+        type=steps.profile,
+        metavar="NAME|FILE",
+        help="printer profile (default: the skin's own; for check without one: ender5plus-vipro)",
     )
     p.add_argument("--skin", metavar="SKIN", help="for check: the skin it is printed in, to judge the nozzle against the mould's wall")
     p.add_argument("--piece", metavar="ID", help="for check with --skin: the piece, such as P1 (default: the one the file's head names)")

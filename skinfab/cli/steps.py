@@ -99,6 +99,13 @@ def named(suffix: str) -> Callable[[str], Path]:
     return check
 
 
+def profile(text: str) -> str:
+    """A printer or a material by its name or file, for argparse: one that is empty, of a variable that is not set, is not the usual one."""
+    if not text:
+        raise argparse.ArgumentTypeError("it is empty; give a name or a file, or leave it out")
+    return text
+
+
 def add_mesh_options(p: argparse.ArgumentParser) -> None:
     """MESH and how to read it."""
     p.add_argument("mesh", metavar="MESH", type=Path, help="OBJ, STL, PLY, OFF or GLB file")
@@ -133,8 +140,8 @@ def add_cut_options(p: argparse.ArgumentParser) -> None:
         + "; more is less seam",
     )
     p.add_argument("--max-p99", type=bound, metavar="D", help="d that 99 %% of a piece's area keep to (default: not asked for)")
-    p.add_argument("--printer", metavar="NAME|FILE", help="printer profile, whose bed the pieces must fit")
-    p.add_argument("--material", metavar="NAME|FILE.toml", help="material profile: ink, silicone, mould (see skinfab strips)")
+    p.add_argument("--printer", type=profile, metavar="NAME|FILE", help="printer profile, whose bed the pieces must fit")
+    p.add_argument("--material", type=profile, metavar="NAME|FILE.toml", help="material profile: ink, silicone, mould (see skinfab strips)")
     p.add_argument("--seed", type=seed, default=0, help="kept in the document; the same seed gives the same result")
 
 

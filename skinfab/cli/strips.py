@@ -35,8 +35,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         help="measured strips: a table with the columns length_mm and r_kohm, kilo-ohm; comma or semicolon between them",
     )
     p.add_argument("--copies", metavar="N", type=int, help="strips of each length, 2 to 8 (default 4)")
-    p.add_argument("--material", metavar="NAME|FILE.toml", help="material profile to begin from")
-    p.add_argument("--printer", metavar="NAME|FILE", help="printer profile")
+    p.add_argument("--material", type=steps.profile, metavar="NAME|FILE.toml", help="material profile to begin from")
+    p.add_argument("--printer", type=steps.profile, metavar="NAME|FILE", help="printer profile")
     p.add_argument("--json", action="store_true", help="print one JSON object and nothing else")
     p.set_defaults(run=run, wrong_usage=p.error)
 

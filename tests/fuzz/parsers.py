@@ -34,7 +34,7 @@ from skinfab.batch.record import read_record
 from skinfab.batch.run import Outcome
 from skinfab.batch.table import write_tables
 from skinfab.document import load_skin
-from skinfab.errors import InputError, RefusedError
+from skinfab.errors import LONGEST, InputError, RefusedError
 from skinfab.fingertip.array.learn import load_array
 from skinfab.fingertip.force.gravity_model import load_hand
 from skinfab.fingertip.force.labels import with_labels
@@ -58,9 +58,6 @@ from skinfab.readout.logs.log import read_log, read_log_table
 from skinfab.seams.manual import read_cuts
 from skinfab.strip_table import read_strips
 from skinfab.wiring import read_wiring
-
-#: The longest sentence that is still one.
-SENTENCE = 2000
 
 
 @dataclass(frozen=True)
@@ -98,7 +95,7 @@ def run(parser: Parser, data: bytes, folder: Path) -> str:
         parser.read(path)
     except (InputError, RefusedError) as fault:
         said = str(fault)
-        assert said.strip() and "\n" not in said and len(said) < SENTENCE, said
+        assert said.strip() and "\n" not in said and len(said) <= LONGEST, said
         return said
     return ""
 
