@@ -42,6 +42,9 @@ WET_DWELL_S = 900.0
 #: Least slack of a triangle inequality, as a fraction of the mean edge: needles below it are mollified.
 MOLLIFY = 1e-9
 
+#: d of at most this much above 4 is flat: lengths are kept within a twentieth of a percent.
+FLAT_EXCESS = 1e-6
+
 #: Newton on d stops when the next step promises less than this fraction of what is left above 4.
 NEWTON_DECREASE = 1e-4
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -12,11 +14,9 @@ from skinfab.flatten.isometric import Apart, IsometricSolver
 from skinfab.mesh.model import Mesh
 from skinfab.seams.judge import Limits, Verdict, verdict_of
 from skinfab.seams.refine import Judged
+from skinfab.tolerances import FLAT_EXCESS
 
 FloatArray = NDArray[np.float64]
-
-#: A piece that leaves more of the bound than this is left at its least mean d.
-_USED = 0.75
 
 #: By how much more a triangle at the p99 counts than one at d 4: at first, and at most. What that costs the mean grows with the square
 #: for small weights, so that three tries come near to the bound.
@@ -46,11 +46,10 @@ def evened(mesh: Mesh, item: Judged, limits: Limits) -> Judged:
     Returns
     -------
     (OpenPiece, Verdict)
-        The same where the piece leaves a quarter of the bound or more, or where nothing is gained; no less accepted, and with
-        overlap only where it had some.
+        The same where nothing is left of the bound or nothing gained; no less accepted, and with overlap only where it had some.
     """
     piece, before = item
-    if not _USED * (limits.mean - 4) <= before.distortion.mean - 4 < limits.mean - 4:
+    if before.distortion.mean >= limits.mean or before.distortion.p99 - 4 < FLAT_EXCESS:
         return item
     V = mesh.V[piece.vertices]
     solver = IsometricSolver(V, piece.F)
@@ -58,6 +57,18 @@ def evened(mesh: Mesh, item: Judged, limits: Limits) -> Judged:
     if free is before and covers:
         free, _ = _evened(mesh, item, limits, solver, keep_apart(V, piece.topology))
     return piece, free
+
+
+def brought_within(mesh: Mesh, item: Judged, limits: Limits) -> Judged:
+    """A piece that would be accepted but for its p99, with hot spots evened out; the same where that is not so."""
+    piece, verdict = item
+    plain = replace(limits, p99=np.inf)
+    if verdict.distortion.p99 <= limits.p99 or verdict.distortion.mean > limits.mean:
+        return item
+    other = verdict_of(mesh, piece, verdict.UV, plain)
+    if not other.accepted:
+        return item
+    return piece, verdict_of(mesh, piece, evened(mesh, (piece, other), plain)[1].UV, limits)
 
 
 def _evened(mesh: Mesh, item: Judged, limits: Limits, solver: IsometricSolver, apart: Apart | None) -> tuple[Verdict, bool]:
@@ -84,7 +95,7 @@ def _weighted(solver: IsometricSolver, UV: FloatArray, weight: float, apart: Apa
         for _ in range(_ROUNDS):
             excess = distortions(UV, solver.F, solver.gradients) - 4
             (worst,) = quantiles(excess, area, (0.99,))
-            solver.weight = area * (1 + weight * np.minimum(excess / worst, 1))
+            solver.weight = area * (1 + weight * np.clip(excess / worst, 0, 1))
             solver.weight /= solver.weight.sum()
             UV = solver.refine(UV, max_steps=_STEPS, apart=apart).UV
         return UV

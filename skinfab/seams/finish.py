@@ -15,6 +15,9 @@ from skinfab.seams.refine import Judged
 if TYPE_CHECKING:
     from skinfab.seams.auto import Seams
 
+#: A piece that leaves more of the bound than this stays at its least mean d.
+_USED = 0.75
+
 #: Sides in contact creep past each other in hundreds of steps, for next to nothing.
 _APART_STEPS = 12
 
@@ -37,7 +40,9 @@ def finish(mesh: Mesh, seams: Seams, limits: Limits) -> Seams:
 
 def finished(mesh: Mesh, item: Judged, limits: Limits) -> Judged:
     """`finish` of one piece."""
-    piece, verdict = evened(mesh, _at_least(mesh, item, limits), limits)
+    piece, verdict = _at_least(mesh, item, limits)
+    if verdict.distortion.mean - 4 >= _USED * (limits.mean - 4):
+        piece, verdict = evened(mesh, (piece, verdict), limits)
     return piece, replace(verdict, parted=item[1].parted)
 
 

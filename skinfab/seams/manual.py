@@ -26,6 +26,7 @@ from skinfab.mesh.model import Mesh
 from skinfab.mesh.topology import Topology
 from skinfab.seams.auto import Aim, Seams, find_seams
 from skinfab.seams.cut import OpenPiece, open_pieces
+from skinfab.seams.even import brought_within
 from skinfab.seams.graph import edge_graph, trace
 from skinfab.seams.judge import Limits, Verdict, excess, judge
 from skinfab.seams.naming import as_paths, bounds_of, idle, named_edges
@@ -200,7 +201,7 @@ def seams_by_hand(mesh: Mesh, cut: BoolArray, limits: Limits, *, numbers: IntArr
     pieces = []
     weight = seam_weights(mesh)
     for number, piece in enumerate(open_pieces(mesh, cut), start=1):
-        verdict = judge(mesh, piece, limits) if piece.is_disk else None
+        verdict = brought_within(mesh, (piece, judge(mesh, piece, limits)), limits)[1] if piece.is_disk else None
         if verdict is not None and verdict.accepted:
             pieces.append((piece, verdict))
             continue

@@ -4,14 +4,16 @@ import numpy as np
 import pytest
 import shapes
 
+from skinfab.errors import RefusedError
 from skinfab.flatten.distortion import measure
 from skinfab.flatten.isometric import IsometricSolver
 from skinfab.mesh.model import Mesh
-from skinfab.seams.auto import find_seams
+from skinfab.seams.auto import Seams, find_seams
 from skinfab.seams.cut import open_pieces
 from skinfab.seams.even import evened
 from skinfab.seams.finish import finish
 from skinfab.seams.judge import Limits, judge
+from skinfab.seams.manual import seams_by_hand
 from skinfab.seams.refine import Judged
 
 
@@ -43,7 +45,22 @@ def test_more_to_spend_gains_more() -> None:
 
 def test_what_leaves_much_of_the_bound_stays_at_its_least_mean() -> None:
     mesh, item = at_its_least(*shapes.cap(10, 1.0))
-    assert evened(mesh, item, Limits(mean=4 + 1.5 * (item[1].distortion.mean - 4))) is item
+    cut = np.zeros(len(mesh.topology.E), dtype=bool)
+    for share, gains in ((1.5, False), (1.2, True)):
+        limits = Limits(mean=4 + share * (item[1].distortion.mean - 4))
+        ((_, verdict),) = finish(mesh, Seams(cut, [item]), limits).pieces
+        assert (verdict.distortion.p99 < item[1].distortion.p99 - 1e-3) == gains
+
+
+def test_seams_by_hand_are_not_refused_for_hot_spots_that_can_be_evened_out() -> None:
+    mesh, item = at_its_least(*shapes.cap(16, 1.4))
+    before = item[1].distortion
+    cut = np.zeros(len(mesh.topology.E), dtype=bool)
+    limits = Limits(mean=4 + 1.1 * (before.mean - 4), p99=before.p99 - 1e-3)
+    ((_, verdict),) = seams_by_hand(mesh, cut, limits).pieces
+    assert verdict.accepted and verdict.distortion.p99 <= limits.p99
+    with pytest.raises(RefusedError, match="p99"):
+        seams_by_hand(mesh, cut, Limits(mean=limits.mean, p99=4 + 0.5 * (before.p99 - 4)))
 
 
 def test_what_is_flat_stays_so() -> None:
