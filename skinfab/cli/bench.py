@@ -83,7 +83,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         help="triangles of the disks (default: 5000,20000,80000; simplify: 20000,80000,320000; segment: none)",
     )
     p.add_argument(
-        "--meshes", metavar="FILE", type=Path, nargs="+", default=[], help="segment: find seams on these too (default: the project's own)"
+        "--meshes", metavar="FILE", type=Path, nargs="+", default=[], help="segment: find seams on these beside the project's own"
     )
     p.add_argument("--repeats", metavar="K", type=steps.counting, default=3, help="the least time of K counts (default: 3)")
     p.add_argument("--json", action="store_true", help="print one JSON object and nothing else")

@@ -299,7 +299,7 @@ def _by_hand(
 def piece_lines(pieces: Sequence[Piece], distortions: Sequence[Distortion]) -> list[str]:
     """One line a piece, for a person to read."""
     return [
-        f"{piece.id}: {piece.size[0]:.1f} x {piece.size[1]:.1f} mm, {len(piece.F)} triangles, "
+        f"{piece.id}: {piece.size[0]:.1f} x {piece.size[1]:.1f} mm, {counted(len(piece.F), 'triangle')}, "
         f"d mean {d.mean:.4f} p99 {d.p99:.3f} max {d.max:.3f}"
         for piece, d in zip(pieces, distortions, strict=True)
     ]
