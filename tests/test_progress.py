@@ -14,7 +14,7 @@ BAR = """
 import time
 from skinfab.progress import terminal_progress
 with terminal_progress(quiet={quiet}) as progress:
-    progress(0.25, "flattening"); time.sleep(0.3)
+    progress(0.25, "flattening [/]*.obj"); time.sleep(0.3)
     progress(0.75, "moulds"); time.sleep(0.3)
 """
 
@@ -75,4 +75,4 @@ def test_terminal_gets_a_bar_unless_quiet(quiet: bool) -> None:
         pass
     os.close(master)
     assert run.stdout == b""
-    assert (b"moulds" in shown and b"left" in shown) is not quiet
+    assert (b"[/]*.obj" in shown and b"moulds" in shown and b"left" in shown) is not quiet

@@ -16,6 +16,7 @@ from typing import Any, NoReturn
 from skinfab.batch.job import Job, Value, name_of
 from skinfab.batch.options import Options
 from skinfab.errors import InputError
+from skinfab.progress import Progress, silent
 from skinfab.toml_file import MAX_BYTES, parse_toml
 
 #: More jobs are a slip of the pen: at a second each they would take twelve days on one core.
@@ -47,7 +48,7 @@ class Plan:
     notes: tuple[str, ...] = ()
 
 
-def read_plan(path: str | Path, *, output: str | Path) -> Plan:
+def read_plan(path: str | Path, *, output: str | Path, progress: Progress = silent) -> Plan:
     """Read a file such as
 
     .. code-block:: toml
@@ -68,6 +69,8 @@ def read_plan(path: str | Path, *, output: str | Path) -> Plan:
         Paths and patterns in it count from its folder.
     output : path
         What lies there is a result and no mesh, whatever a pattern says.
+    progress : Progress
+        A pattern may have a whole disk to look through.
 
     Raises
     ------
@@ -83,14 +86,14 @@ def read_plan(path: str | Path, *, output: str | Path) -> Plan:
             f"cannot read {path}: {fault.strerror or fault}; give a TOML file of meshes and settings (docs/batch.md)"
         ) from fault
     data = parse_toml(raw, path)
-    return _Reader(path, raw.decode(), Path(output).resolve()).plan(data)
+    return _Reader(path, raw.decode(), Path(output).resolve(), progress).plan(data)
 
 
 class _Reader:
     """Knows the file, so that each fault names its line."""
 
-    def __init__(self, path: Path, text: str, output: Path) -> None:
-        self._path, self._text, self._output = path, text, output
+    def __init__(self, path: Path, text: str, output: Path, progress: Progress) -> None:
+        self._path, self._text, self._output, self._progress = path, text, output, progress
         self._folder = path.resolve().parent
         self._options = Options()
 
@@ -110,6 +113,7 @@ class _Reader:
                 f"{self._path}: {len(meshes)} meshes and these settings make {number:,} jobs, more than {MOST_JOBS:,}; part the file"
             )
         self._require_fitting(meshes, settings)
+        self._progress(0.0, f"reading {len(meshes)} files")
         return self._product(meshes, settings, limits)
 
     def _product(self, meshes: Sequence[Path], settings: dict[str, list[Value]], limits: dict[str, float]) -> Plan:
@@ -139,6 +143,7 @@ class _Reader:
             self._refuse("", "meshes", 'it must be a list of files or patterns such as ["objects/*.stl"]')
         found: dict[Path, None] = {}
         for pattern in patterns:
+            self._progress(0.0, f"looking for {pattern}")
             try:
                 matches = sorted(self._matches(pattern))
             except ValueError as fault:

@@ -46,7 +46,8 @@ def run(args: argparse.Namespace) -> int:
         with suppress(InputError):  # a full disk, which is what is told
             write_tables(plan, outcome, args.output)
 
-    plan = read_plan(args.plan, output=args.output)
+    with terminal_progress(quiet=args.json) as progress:
+        plan = read_plan(args.plan, output=args.output, progress=progress)
     require_apart(args.output, [], [args.plan, *{job.mesh for job in plan.jobs}], perhaps=[CSV, PAGE, OBJECT])
     steps.say(plan.notes)
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

@@ -136,6 +136,14 @@ def test_what_is_wrong_is_told_with_its_line(folder: Path, text: str, says: str)
     assert "batch.toml" in str(told.value)
 
 
+def test_it_says_what_it_looks_for(folder: Path) -> None:
+    """A pattern may have a whole disk to look through."""
+    (folder / "batch.toml").write_text('meshes = ["**/*.obj", "b.stl"]')
+    said: list[str] = []
+    read_plan(folder / "batch.toml", output=folder / "out", progress=lambda fraction, label: said.append(label))
+    assert said == ["looking for **/*.obj", "looking for b.stl", "reading 3 files"]
+
+
 def test_a_file_that_is_not_there(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"cannot read .*no\.toml: No such file"):
         read_plan(tmp_path / "no.toml", output=tmp_path)
