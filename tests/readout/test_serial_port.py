@@ -106,7 +106,8 @@ def test_a_cable_pulled_and_plugged_in_again_is_survived() -> None:
         assert device.wait(PATIENCE_S)
     numbers = [f.sequence for f in found]
     assert counts.reopened == 2 and numbers[0] == 0 and numbers[-1] == 999
-    assert counts.lost == 1000 - len(found) > 0 and counts.frames == len(found)
+    # What was on its way as the cable went is lost; where the reader was quicker, nothing is.
+    assert counts.lost == 1000 - len(found) and counts.frames == len(found)
     assert set(range(290)) <= set(numbers)  # what came before is whole, but for what was on its way
     assert all(b > a for a, b in itertools.pairwise(numbers))
 
