@@ -98,7 +98,8 @@ def test_packets_twice_or_late_are_dropped_and_counted() -> None:
 
 
 def test_a_cable_pulled_and_plugged_in_again_is_survived() -> None:
-    made = sent(1000)
+    whole = sent(1000)
+    made = whole[:300] + whole[305:]  # five are never sent: of those on their way as the cable goes a quick reader may lose none
     faults = Faults(unplugged={300: 0.3, 700: 0.1})
     with PtyServer(STREAM, made, faults=faults) as device, SerialPort(device.path) as port:
         found = until(port, 999)
@@ -106,8 +107,7 @@ def test_a_cable_pulled_and_plugged_in_again_is_survived() -> None:
         assert device.wait(PATIENCE_S)
     numbers = [f.sequence for f in found]
     assert counts.reopened == 2 and numbers[0] == 0 and numbers[-1] == 999
-    # What was on its way as the cable went is lost; where the reader was quicker, nothing is.
-    assert counts.lost == 1000 - len(found) and counts.frames == len(found)
+    assert counts.lost == 1000 - len(found) > 0 and counts.frames == len(found)
     assert set(range(290)) <= set(numbers)  # what came before is whole, but for what was on its way
     assert all(b > a for a, b in itertools.pairwise(numbers))
 
